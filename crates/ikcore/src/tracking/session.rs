@@ -281,7 +281,8 @@ impl Session {
         let (context, targets) = (self.arm.context(), &self.arm.targets);
         let Some((task, target)) = context.aims.iter().next() else { return TickResult::at(context.q) };
         let (criterion, goals, rng) = (&task.criterion, &mut self.goals, &mut self.rng);
-        let tick = Tick { context, target, criterion, goals, targets, sampled_ago, rng, monitor };
+        let most_evaluations = self.way_back.as_ref().map_or(usize::MAX, |way_back| way_back.left_to_rule());
+        let tick = Tick { context, target, criterion, goals, targets, most_evaluations, sampled_ago, rng, monitor };
         self.running.advance(tick, self.safety.as_deref_mut())
     }
 

@@ -235,7 +235,11 @@ impl GoalPursuit {
     fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
         let mut end = TickResult::at(&self.sample);
-        tick.descend(&mut end, positions, Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() });
+        tick.descend(
+            &mut end,
+            positions,
+            Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() },
+        );
         found.evaluations += end.evaluations;
         found.iterations += end.iterations;
         let [before, after] = [&self.sample, &end.q].map(|q| aims.assess(robot, q).score);

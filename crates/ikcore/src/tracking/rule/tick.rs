@@ -20,6 +20,8 @@ pub(in crate::tracking) struct Tick<'a> {
     pub goals: &'a mut Goals,
     /// Targets received so far.
     pub targets: &'a TargetStream,
+    /// Largest evaluation budget of a descent, beside the rule's own: less while a way back takes its part of the tick.
+    pub most_evaluations: usize,
     /// Age of the new targets at the end of the tick, in ticks; `None` if none arrived in this tick.
     pub sampled_ago: Option<f64>,
     pub rng: &'a mut LazyRng,

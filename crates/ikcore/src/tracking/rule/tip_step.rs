@@ -42,7 +42,7 @@ impl TipStep {
             self.gauss_newton(&mut found, None, &tick);
         }
         if !found.is_solved() && !self.approach(&begin, &mut found, &tick) {
-            let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
+            let stop = Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() };
             tick.descend(&mut found, &tick_box.bounds, stop);
             found.assess(robot, &aims);
             found.evaluations += 1;

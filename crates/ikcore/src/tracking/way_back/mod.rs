@@ -6,8 +6,8 @@
 //! takes it there inside all limits, and the safety filter goes on filtering each command.
 //!
 //! ```text
-//! Following --error has ceased to fall--> Looking --configurations found--> Choosing --clear line--> Returning
-//!     ^------- nearer again, none found, none clear, told to stay, arrived, or no nearer to the goal -----|
+//! Following --error has ceased to fall--> Doubting --a descent ends too--> Looking --search ends--> Choosing --clear line--> Returning
+//!     ^-- nearer by itself, none found, none clear, told to stay; arrived, no nearer to the goal ---------------------------|
 //! ```
 //!
 //! | file | what |
@@ -35,19 +35,22 @@ use crate::rng::LazyRng;
 use crate::solver::Monitor;
 
 /// Distance of a joint from its limit (rad, m) at which it is at the limit.
-const AT_LIMIT: f64 = 1e-3;
+const AT_LIMIT: f64 = 0.01;
 
 /// Fraction of the velocity limit, and of 1 rad/s (m/s), below which a joint rests.
 const RESTING: f64 = 0.02;
 
-/// Least decrease of the error (m/rad) that a joint at its limit prevents.
-const SLOPE: f64 = 0.01;
+/// Least decrease of the error (m/rad) that a joint at its limit prevents; small, since a stretched elbow changes little.
+const SLOPE: f64 = 1e-4;
 
 /// Fraction of the error of the resting arm that the goal may have.
 const BETTER: f64 = 0.8;
 
 /// Distance of a joint (rad, m) up to which the rule gets to the target by itself, as it averages noise.
 const WITHIN_NOISE: f64 = 0.05;
+
+/// Evaluations of a descent that the way back leaves to the rule of the tick.
+const LEFT_TO_RULE: usize = 20;
 
 /// Distance of all joints from the goal (rad, m) at which the arm has arrived.
 const ARRIVED: f64 = 0.02;
@@ -57,9 +60,8 @@ const ARRIVED: f64 = 0.02;
 const PATIENCE: f64 = 1.0;
 const PROGRESS: f64 = 0.02;
 
-/// Sections of a line that are certified one by one, and their number in a tick.
+/// Sections of a line, of which a tick certifies one.
 const SECTIONS: usize = 8;
-const SECTIONS_IN_A_TICK: usize = 2;
 
 /// The end of a tick.
 pub(super) struct EndOfTick<'a> {
@@ -92,6 +94,8 @@ pub(super) enum Next {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     Following,
+    /// Descends, to see whether the rule gets to the target by itself.
+    Doubting,
     Looking,
     /// Certifies the line to a candidate, section by section.
     Choosing {
@@ -151,6 +155,12 @@ impl WayBack {
         self.state == State::Returning
     }
 
+    /// Evaluations of a descent that the rule may spend in the next tick.
+    #[inline]
+    pub fn left_to_rule(&self) -> usize {
+        if self.state == State::Following { usize::MAX } else { LEFT_TO_RULE }
+    }
+
     /// Evaluations of the forward kinematics in the last tick.
     #[inline]
     pub fn evaluations(&self) -> usize {
@@ -187,26 +197,14 @@ impl WayBack {
     #[cold]
     fn decide(&mut self, error: f64, mut end: EndOfTick<'_>, safety: Option<&mut SafetyFilter>) -> Next {
         match self.state {
-            State::Following => {
-                self.begin_to_look(error, &mut end);
-                Next::Continue
-            }
-            State::Looking | State::Choosing { .. } if !is_still(error, self.error_at_rest) => {
-                self.follow();
-                Next::Continue
-            }
-            State::Looking => {
-                let before = self.search.evaluations;
-                let mut means = Means { rng: end.rng, monitor: end.monitor };
-                if self.search.advance(&end.context, &mut means) {
-                    self.state = State::Choosing { candidate: 0, section: 0 };
-                }
-                self.evaluations = self.search.evaluations - before;
-                Next::Continue
-            }
-            State::Choosing { candidate, section } => self.choose((candidate, section), &mut end, safety),
-            State::Returning => self.check_return(&end),
+            State::Returning => return self.check_return(&end),
+            State::Following => self.doubt(error, &end),
+            _ if !is_still(error, self.error_at_rest) => self.follow(),
+            State::Doubting => self.begin_to_look(&mut end),
+            State::Looking => self.look(&mut end),
+            State::Choosing { candidate, section } => return self.choose((candidate, section), &mut end, safety),
         }
+        Next::Continue
     }
 
     /// Follows the target again.
@@ -219,37 +217,61 @@ impl WayBack {
     fn stay(&mut self, way: Way, end: &EndOfTick<'_>, failed: bool) {
         self.state = State::Following;
         self.away = self.away.map(|away| Away { way, ..away });
+        self.name_joints(&end.context);
         self.tried = Some(Tried::new(end.context.aims.targets, self.error_at_rest, self.away, failed));
     }
 
-    /// Begins to look for configurations on the target, if the arm rests or a descent does not lead there, and if this has not
-    /// been tried.
-    fn begin_to_look(&mut self, error: f64, end: &mut EndOfTick<'_>) {
+    /// Doubts that the rule gets to the target, unless this has been tried.
+    fn doubt(&mut self, error: f64, end: &EndOfTick<'_>) {
         let context = end.context;
         if context.aims.is_empty() {
             return;
         }
+        self.error_at_rest = error;
         if let Some(tried) = &mut self.tried
             && tried.holds(context.aims.targets, error)
         {
-            (self.away, self.error_at_rest) = (tried.away, error);
+            self.away = tried.away;
+            self.name_joints(&context);
             return;
         }
+        self.state = State::Doubting;
+    }
+
+    /// Begins to look for configurations on the target, if the arm rests or a descent does not lead there.
+    fn begin_to_look(&mut self, end: &mut EndOfTick<'_>) {
+        let context = end.context;
         let bounds = movable(&context);
         let mut means = Means { rng: end.rng, monitor: end.monitor };
         let (near, solved, evaluations) = descended(context.q, DESCENT, &context, &bounds, &mut means);
         self.evaluations = evaluations;
         if solved && (!is_resting(end) || largest_difference(&near, context.q) < WITHIN_NOISE) {
-            self.away = None;
+            self.follow();
             return;
         }
         self.search.restart();
         if solved {
             self.search.offer(near, &context, &bounds);
         }
-        let way = self.away.map_or(Way::Unknown, |away| away.way);
-        self.away = Some(Away { way, held: self.held(&context, &bounds) });
-        (self.state, self.error_at_rest) = (State::Looking, error);
+        self.state = State::Looking;
+        self.away.get_or_insert(Away { way: Way::Unknown, held: [0; 2] });
+        self.name_joints(&context);
+    }
+
+    /// Looks for configurations on the target.
+    fn look(&mut self, end: &mut EndOfTick<'_>) {
+        let before = self.search.evaluations;
+        let mut means = Means { rng: end.rng, monitor: end.monitor };
+        if self.search.advance(&end.context, &mut means) {
+            self.state = State::Choosing { candidate: 0, section: 0 };
+        }
+        self.evaluations = self.search.evaluations - before;
+    }
+
+    /// Notes the joints that hold the arm where it is.
+    fn name_joints(&mut self, context: &StepContext<'_>) {
+        let held = self.held(context, &movable(context));
+        self.away = self.away.map(|away| Away { held, ..away });
     }
 
     /// Joints at their lower and upper limits that would have to go beyond to lower the error.
@@ -284,10 +306,9 @@ impl WayBack {
             return Next::Continue;
         }
         if let Some(safety) = safety {
-            let until = (section + SECTIONS_IN_A_TICK).min(SECTIONS);
-            let is_clear = (section..until).all(|section| section_is_clear(safety, &context, &to.q, section));
-            if !is_clear || until < SECTIONS {
-                let next = if is_clear { (candidate, until) } else { (candidate + 1, 0) };
+            let is_clear = section_is_clear(safety, &context, &to.q, section);
+            if !is_clear || section + 1 < SECTIONS {
+                let next = if is_clear { (candidate, section + 1) } else { (candidate + 1, 0) };
                 self.state = State::Choosing { candidate: next.0, section: next.1 };
                 return Next::Continue;
             }

@@ -17,8 +17,8 @@ use crate::task::Target;
 use crate::tracking::progress::time_of_way;
 use crate::tracking::step_context::StepContext;
 
-/// Evaluations of a descent, and of all descents of a tick.
-pub(super) const DESCENT: usize = 60;
+/// Evaluations of a descent, and of all work in a tick.
+pub(super) const DESCENT: usize = 40;
 
 /// Values of the parameter of a redundant arm, and their number in a tick.
 const VALUES: usize = 24;
@@ -59,8 +59,9 @@ pub(super) struct Search {
     tried: usize,
     /// Solutions found so far.
     solutions: usize,
-    /// Evaluations of the forward kinematics.
+    /// Evaluations of the forward kinematics, and those before this tick.
     pub evaluations: usize,
+    begun: usize,
 }
 
 /// What the search of a tick draws on.
@@ -78,6 +79,7 @@ impl Search {
 
     /// Searches for one tick. Returns whether the search has ended.
     pub fn advance(&mut self, context: &StepContext<'_>, means: &mut Means<'_>) -> bool {
+        self.begun = self.evaluations;
         let bounds = movable(context);
         let pose = match context.aims.only(context.robot) {
             Some((target @ Target::Pose(pose), criterion)) if criterion.fixes_pose(target) => Some(pose),
@@ -128,8 +130,11 @@ impl Search {
         bounds: &Bounds,
         means: &mut Means<'_>,
     ) {
-        let mut left = DESCENT;
         for index in 0..branches.len() {
+            let left = DESCENT.saturating_sub(self.evaluations - self.begun);
+            if left < 2 {
+                return;
+            }
             let mut q: Point = branches.columns().iter().map(|values| values[index]).collect();
             bring_near(context.robot, bounds, context.q, &mut q);
             let mut inside = q.clone();
@@ -140,8 +145,8 @@ impl Search {
             self.evaluations += 1;
             if context.aims.assess(context.robot, &inside).score.solved {
                 self.offer(inside, context, bounds);
-            } else if left > 0 {
-                left -= self.take_descent(&inside, left, context, bounds, means).min(left);
+            } else {
+                self.take_descent(&inside, left - 1, context, bounds, means);
             }
         }
     }
@@ -158,7 +163,7 @@ impl Search {
         self.tried >= DRAWN || self.solutions >= ENOUGH
     }
 
-    /// Takes the end of a descent from `start` of at most `most` evaluations, if it meets the target. Returns their number.
+    /// Takes the end of a descent from `start` of at most `most` evaluations, if it meets the target.
     fn take_descent(
         &mut self,
         start: &[f64],
@@ -166,13 +171,12 @@ impl Search {
         context: &StepContext<'_>,
         bounds: &Bounds,
         means: &mut Means<'_>,
-    ) -> usize {
+    ) {
         let (end, solved, evaluations) = descended(start, most, context, bounds, means);
         self.evaluations += evaluations;
         if solved {
             self.offer(end, context, bounds);
         }
-        evaluations
     }
 
     /// Keeps `q`, a configuration on the target, if it is among the best that are apart from each other.
