@@ -103,6 +103,6 @@ mod tests {
                 first = Some(tick);
             }
         }
-        assert_eq!(first, Some(61));
+        assert_eq!(first, Some(60));
     }
 }
