@@ -80,6 +80,10 @@ SPOILED = {
         "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
         "a pose that the arm has is called out of reach",
     ),
+    "calibrations": (
+        "found = Changed(found, errors_after=found.errors_after + 1e-3)",
+        "the errors after are not as told",
+    ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
         "q is not finite",
@@ -149,6 +153,10 @@ SPOILED = {
     "clear_ticks": (
         "ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]",
         "the clearance of a tick is above the true one",
+    ),
+    "own_points": (
+        "kept = kept[1:]\nremoved += 1",
+        "a point is kept, or taken out, against the padding",
     ),
     "urdf": (
         "pose = pose * nan",

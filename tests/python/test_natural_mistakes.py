@@ -163,7 +163,7 @@ SOLVERS = (
             lambda: bik.Scene(obstacle=[]),  # type: ignore[call-arg]
             bik.CallError,
             "Scene() got an unexpected keyword argument 'obstacle' (did you mean 'obstacles'?); its arguments: "
-            "obstacles",
+            "obstacles, attached",
         ),
         (
             lambda: bik.view("panda"),  # type: ignore[arg-type]
@@ -209,7 +209,7 @@ def test_a_natural_mistake_is_told(call: object, error: type[Exception], message
         ),
         (
             '{"obstacle": [], "obstacles": []}',
-            "unknown key 'obstacle' (did you mean 'obstacles'?); keys: \"version\", \"obstacles\"",
+            'unknown key \'obstacle\' (did you mean \'obstacles\'?); keys: "version", "obstacles", "attached"',
         ),
         (
             '[\n  {"type": "sphere", "center": [0, 0, 0], "radius": 0.1},\n]',

@@ -51,6 +51,10 @@ MIMIC = bik.Robot.from_urdf(
 )
 Q = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
 UR5_Q = np.array([0.3, -1.2, 1.4, -0.8, -1.1, 0.5])
+MEASURED_Q = UR5.random_configurations(40, seed=1)
+MEASURED = UR5.fk(MEASURED_Q)[:, :3, 3]
+ONE_Q = HELD.random_configurations(10, seed=1)
+CALIBRATED = bik.calibrate(HELD, ONE_Q, HELD.fk(ONE_Q))
 BEYOND, EDGE, ONWARD = Q + 9.5 * np.eye(7)[1], Q + 2.89 * np.eye(7)[0], np.eye(7)[0]
 BALL = bik.obstacles.Sphere((2.0, 0.0, 0.0), 0.1)
 RATED = bik.Limits(velocity=1.0, acceleration=2.0)
@@ -158,9 +162,16 @@ ROWS: list[Row] = [
     ("Robot.with_srdf", Urdf, lambda at: PANDA.with_srdf("<srdf/>"), 'SRDF line 1: the outermost element must be <robot>, found <srdf>'),
     ("Robot.with_srdf", Urdf, lambda at: PANDA.with_srdf(OTHERS_SRDF), "SRDF: it is for another robot: 'panda' has no two links that it disables, such as 'shoulder_link'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Scene", Invalid, lambda at: api.Scene([BALL, 1]), 'obstacle 1 must be made by bik.obstacles, such as Sphere or Box, got 1'),
+    ("Scene", Invalid, lambda at: api.Scene(attached=[("hand", BALL)]), "attached 0 must be (link, shape, touch, name), got ('hand', obstacles.Sphere([2.0, 0.0, 0.0], 0.1))"),
+    ("Scene.attach_to", Invalid, lambda at: api.Scene(attached=[("hnd", BALL, (), "part")]).attach_to(THICK), "attached object 'part': robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
+    ("Scene.from_octomap", Invalid, lambda at: api.Scene.from_octomap(at.file("map.bt", "x")), "{folder}/map.bt: line 1: expected \"# Octomap OcTree binary file\" or \"# Octomap OcTree file\", got 'x': this is no .bt or .ot file"),
+    ("obstacles.PointCloud.without_robot", Invalid, lambda at: api.obstacles.PointCloud([(0, 0, 0)], 0.1).without_robot(PANDA, Q), f"robot 'panda' {NO_CAPSULES}"),
+    ("obstacles.PointCloud.without_robot", Invalid, lambda at: api.obstacles.PointCloud([(0, 0, 0)], 0.1).without_robot(THICK, Q[:6]), "joint angles of robot 'panda': expected 7 joints, got 6"),
+    ("obstacles.Grid.without_robot", Invalid, lambda at: api.obstacles.Grid((0, 0, 0), 0.1, np.ones((1, 1, 1), bool)).without_robot(THICK, Q, padding=-1.0), 'padding must be zero or more and finite, got -1'),
     ("Scene.load", Invalid, lambda at: api.Scene.load(at.file("scene.json", "{}")), '{folder}/scene.json: expected a list of shapes, or an object with such a list as "obstacles"'),
     ("Scene.load", Invalid, lambda at: api.Scene.load(at.file("scene.json", '[{"type": "sphere"}]')), "{folder}/scene.json: obstacle 0 (sphere): the key 'center' is missing; keys: center, radius, touch"),
-    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.needs("yaml").file("scene.yaml", "a: 1")), '{folder}/scene.yaml: expected a MoveIt planning scene: a mapping with "world"'),
+    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.needs("yaml").file("scene.yaml", "a: 1")), '{folder}/scene.yaml: expected a MoveIt planning scene: a mapping with "world", or the .scene text of RViz'),
+    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.file("cell.scene", "cell\n* table\n")), "{folder}/cell.scene: line 2: expected the number of shapes of object 'table', and the file ends: it is not complete"),
     ("Scene.from_trimesh", Invalid, lambda at: api.Scene.from_trimesh(at.needs("trimesh").value(1)), 'geometry must be a trimesh.Trimesh or a trimesh.Scene, got 1'),
     ("best_base", Invalid, lambda at: api.best_base(UR5, np.full((1, 4, 4), np.nan), region=REGION), 'targets: expected finite poses (4, 4) or (n, 4, 4), got shape (1, 4, 4)'),
     ("best_base", Invalid, lambda at: api.best_base(PANDA, np.eye(4)[None], region=REGION, map=at.map()), "map is of robot 'ur5e', not of 'panda'"),
@@ -209,6 +220,13 @@ ROWS: list[Row] = [
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.0), 'voxel must be positive and finite, got 0'),
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.4, directions=6, rolls=1, store=at.file("a.zarr", "no store")), "store: folder '{folder}/a.zarr' cannot be written: File exists"),
     ("reachability", OSError, lambda at: api.reachability(PLANAR, task=api.tasks.Position(), voxel=0.3, store=at.full().path("a.zarr")), '[Errno 28] No space left on device'),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[:5], MEASURED[:5]), "5 measurements give 15 equations for 25 unknowns: measure 9 configurations or more, twice as many if you can, or fit fewer parts"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[[0] * 20], MEASURED[[0] * 20]), "all configurations are alike: move the arm between measurements, each joint over as much of its range as possible"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, 1e3 * MEASURED), "the measured positions spread 1000 times as far as the arm moves: lengths are in metres, and these look like millimetres; divide by 1000"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, np.degrees(MEASURED_Q).clip(-300, 300), MEASURED), "joint 'shoulder_pan_joint' reaches 300.0 rad, far beyond its limits: angles are in radians, and these look like degrees"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, MEASURED[:, :2]), "measured: expected positions (m, 3), poses (m, 4, 4) or distances (m,), got (40, 2)"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, np.full((40, 3), np.nan)), "measurements must be finite, but row 0, entry 0 is NaN"),
+    ("Calibration.to_urdf", Urdf, lambda at: CALIBRATED.to_urdf(FORK), "URDF: its chain of joints is not that of robot 'held': give the file that the robot was loaded from"),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.full((4, 4), np.nan)), 'target must be finite, but entry (0, 0) is NaN'),
     ("self_motion", Invalid, lambda at: api.self_motion(UR5, UR5.fk(np.zeros(6))), "self_motion needs one joint more than the target: robot 'ur5e' has 6 joints, and this target takes 6"),

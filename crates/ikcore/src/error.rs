@@ -247,6 +247,12 @@ pub enum Error {
         /// The conflicting requirements.
         problem: Message,
     },
+    /// Measurements that cannot be right, or do not suffice.
+    #[error("{problem}")]
+    InvalidMeasurement {
+        /// Description of the problem, with advice.
+        problem: Message,
+    },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
@@ -413,6 +419,7 @@ impl Error {
                 vec![remedy]
             }
             Self::InvalidRobot { problem, .. }
+            | Self::InvalidMeasurement { problem }
             | Self::Urdf { problem, .. }
             | Self::Srdf { problem, .. }
             | Self::Unreachable { problem, .. }

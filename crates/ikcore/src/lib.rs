@@ -51,7 +51,7 @@
 //! | 2 | [`starts`], `closed_form`, `bodies` |
 //! | 3 | [`robot`] |
 //! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`motion`], [`task`], [`solver`] |
+//! | 5 | [`motion`], [`task`], [`solver`], [`calibration`] |
 //! | 6 | [`problem`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
@@ -70,6 +70,7 @@ mod along_path;
 mod approach_retreat;
 pub mod batch;
 mod bodies;
+pub mod calibration;
 mod closed_form;
 pub mod error;
 mod free_path;

@@ -13,6 +13,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
         Setting::Method(name) => return format!("method=\"{name}\""),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
+        Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),
         Setting::Budget => "budget in stop=Stop(...)",
         Setting::MethodWithSolver => "method=TPBSO(solver=...)",
         Setting::Tip => "tip=",
@@ -38,6 +39,7 @@ pub fn spelt(setting: &Setting) -> String {
         }
         Setting::CapsulesAlone => "robot.with_capsules(robot.capsules)",
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
+        Setting::Attach => "scene.attach_to(robot)",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
         _ => return setting.to_string(),
     };

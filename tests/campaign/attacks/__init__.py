@@ -4,12 +4,14 @@ from importlib import import_module
 
 from ..attack import Attack
 from . import (
+    calibration,
     calls,
     clearance,
     command_line,
     dead_ends,
     kinematics,
     motion,
+    own_points,
     readers,
     round_poses,
     searching,
@@ -21,8 +23,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, dead_ends, motion, clearance, readers),
-    *(xacro_files, calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, streams, dead_ends, motion, clearance, own_points),
+    *(readers, xacro_files, calibration, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

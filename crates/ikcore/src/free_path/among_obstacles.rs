@@ -96,14 +96,14 @@ pub(super) fn plan(
             let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let plan = with_least_clearance(plan, &mut sweep, margin)?;
-            let obstruction = if open.is_empty() {
+            let (obstruction, own_points) = if open.is_empty() {
                 no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
             } else {
                 let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
                 let straight = nearest.map(|nearest| &nearest.contact);
-                no_way::gap(trees.gap, trees.check.examined(), straight, margin)
+                (no_way::gap(trees.gap, trees.check.examined(), straight, margin), None)
             };
-            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), ..plan }
+            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), own_points, ..plan }
         }
     };
     plan.surroundings = (!is_lines).then(|| space.surroundings());

@@ -130,6 +130,7 @@ impl SolutionSet {
             status: Status::Solved,
             error,
             obstruction: String::new(),
+            own_points: None,
             nearest: self.nearest.as_ref().and_then(|nearest| nearest.get(i).cloned()).map(Box::new),
             iterations: self.iterations,
             restarts: self.restarts,

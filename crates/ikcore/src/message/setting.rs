@@ -61,6 +61,10 @@ pub enum Setting {
     MoreCapsules,
     /// Capsules of one radius along the links.
     CapsulesAlongLinks,
+    /// Robot that carries what is attached to it in a scene.
+    Attach,
+    /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
+    WithoutRobot(&'static str),
 }
 
 impl fmt::Display for Setting {
@@ -96,6 +100,8 @@ impl fmt::Display for Setting {
             Self::CapsulesAlone => "giving it the capsules that it has",
             Self::MoreCapsules => "giving it more of them",
             Self::CapsulesAlongLinks => "with_capsules_along_links",
+            Self::Attach => "a robot that carries it",
+            Self::WithoutRobot(_) => "without_robot",
         })
     }
 }

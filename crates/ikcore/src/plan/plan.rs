@@ -9,7 +9,7 @@ use super::cost::Cost;
 use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
 use crate::message::{Message, Setting, message};
-use crate::obstacle::{Clearance, ClearanceSweep, Surroundings, clear_in_words};
+use crate::obstacle::{Clearance, ClearanceSweep, Measured, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
@@ -34,6 +34,8 @@ pub struct Plan {
     pub clearance: Option<Clearance>,
     /// Why no clear motion was found, if that is so.
     pub obstruction: Option<String>,
+    /// What was measured of the robot itself, if that is the obstruction.
+    pub own_points: Option<Measured>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
     /// Way out of a contact at the start, if there was one.
@@ -108,6 +110,7 @@ impl Plan {
             history: vec![],
             clearance: None,
             obstruction: None,
+            own_points: None,
             chosen_end: None,
             freed: None,
             surroundings: None,
@@ -167,7 +170,10 @@ impl Plan {
     pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
             let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
-            return message![format!("no clear plan for {obstruction}; "), advice];
+            return match self.own_points {
+                Some(measured) => message![format!("no clear plan for {obstruction}; "), measured.advice()],
+                None => message![format!("no clear plan for {obstruction}; "), advice],
+            };
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {

@@ -11,6 +11,7 @@ use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::message::{Message, Setting, message};
+use crate::obstacle::Measured;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
@@ -59,6 +60,8 @@ pub struct Record {
     pub out_of_reach: Option<(ReachShortfall, f64)>,
     /// Status of the whole track.
     pub status: Status,
+    /// What was measured of the robot itself, if the arm was in collision with it.
+    pub own_points: Option<Measured>,
     /// Time taken.
     pub elapsed: Duration,
     /// Approach at the start, if requested.
@@ -113,6 +116,8 @@ pub(super) struct Accepted<'a> {
     pub tick_box: &'a TickBox,
     /// Smallest distance from obstacles and between links (m).
     pub clearance: f64,
+    /// The kind of the nearest obstacle, if a sensor measures it.
+    pub measured: Option<Measured>,
 }
 
 impl Record {
@@ -143,6 +148,7 @@ impl Record {
             criterion,
             out_of_reach: None,
             status: Status::Lost,
+            own_points: None,
             elapsed: Duration::ZERO,
             ease: Ease::NotAsked,
             limit_at,
@@ -169,6 +175,9 @@ impl Record {
     /// Appends the result of a tick.
     pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
         self.note_violations(accepted);
+        if step.status == Status::InCollision {
+            self.own_points = self.own_points.or(accepted.measured);
+        }
         self.q.extend_from_slice(accepted.q);
         self.position.push(step.position);
         self.reference.push(reference);
@@ -349,7 +358,8 @@ impl Record {
             0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
             _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
         };
-        message![format!("in {} steps {phrase}: ", count(status)), status.advice()]
+        let advice = self.own_points.map_or_else(|| status.advice(), Measured::advice);
+        message![format!("in {} steps {phrase}: ", count(status)), advice]
     }
 
     /// Returns [`message`](Self::message) with this `advice` if the track failed.

@@ -130,8 +130,14 @@ impl Session {
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        let clearance = self.space().map_or(f64::NAN, |space| space.clearance(&self.arm.q).distance);
-        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance }
+        let clearance = self.space().map(|space| space.clearance(&self.arm.q));
+        let nearest = clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        Accepted {
+            q: &self.arm.q,
+            tick_box: &self.arm.tick_box,
+            measured: nearest.and_then(|nearest| nearest.contact.measured()),
+            clearance: clearance.map_or(f64::NAN, |clearance| clearance.distance),
+        }
     }
 
     /// The tracked robot.

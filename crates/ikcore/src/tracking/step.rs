@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::away::{Away, Way};
 use crate::message::{Message, message};
+use crate::obstacle::{Contact, Measured};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -33,11 +34,22 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice. It numbers joints, the first being 1.
     pub fn message(&self) -> Message {
-        self.message_naming(|j| (j + 1).to_string())
+        self.message_naming(number)
     }
 
     /// Returns [`message`](Self::message), in which `joint` names each joint by its index.
     pub fn message_naming(&self, joint: impl Fn(usize) -> String) -> Message {
+        self.message_with(self.status.advice(), joint)
+    }
+
+    /// Returns [`message`](Self::message), where the nearest contact is known. An arm that is in collision with what a sensor measured
+    /// is probably in it itself.
+    pub fn message_near(&self, nearest: &Contact) -> Message {
+        let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
+        self.message_with(measured.map_or_else(|| self.status.advice(), Measured::advice), number)
+    }
+
+    fn message_with(&self, advice: Message, joint: impl Fn(usize) -> String) -> Message {
         let error = &self.error;
         let outside = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         if let (Status::Improved | Status::Capped, Some(away)) = (self.status, self.away) {
@@ -55,6 +67,11 @@ impl Step {
             Some(Away { way: Way::Blocked, .. }) => format!("; {}", Away::NO_WAY),
             _ => String::new(),
         };
-        message![format!("{how}, {error} away{outside}{known}: "), self.status.advice()]
+        message![format!("{how}, {error} away{outside}{known}: "), advice]
     }
+}
+
+/// Number of joint `j`, the first being 1.
+fn number(j: usize) -> String {
+    (j + 1).to_string()
 }

@@ -165,8 +165,11 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = self.core.message_naming(|j| self.joints.get(j).cloned().unwrap_or_default());
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        let message = match nearest {
+            Some(nearest) if self.core.status == Status::InCollision => self.core.message_near(&nearest.contact),
+            _ => self.core.message_naming(|j| self.joints.get(j).cloned().unwrap_or_default()),
+        };
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;

@@ -57,6 +57,13 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "manipulability_all" SeveralTips: manipulability_all(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "Scene::new" NoCapsules: Scene::new(&panda, vec![ball(2.0)]), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";
         "Scene::new" InvalidObstacle: Scene::new(&solid(), Obstacles::from_iter([Obstacle::new(ball(2.0), vec!["hnd".into()])])), "touch of obstacle 0 (Sphere): robot 'planar2' has no link 'hnd'; links with bodies: link_1, link_2";
+        "Scene::new" Contradiction: Scene::new(&solid(), Obstacles::beside_carried(vec![], vec![["link_2".into(), "part".into()]])), "in the scene, link 'link_2' carries 'part', which robot 'planar2' does not: use a robot that carries it";
+        "Obstacle::without_robot" NoCapsules: seen().without_robot(&panda, &[0.0; 7], 0.02), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";
+        "Obstacle::without_robot" WrongLength: seen().without_robot(&solid(), &[0.0], 0.02), "joint angles of robot 'planar2': expected 2 joints, got 1";
+        "Obstacle::without_robot" NotFinite: seen().without_robot(&solid(), &[NAN; 2], 0.02), "joint angles must be finite, but joint 'joint_1' is NaN";
+        "Obstacle::without_robot" OutOfRange: seen().without_robot(&solid(), &[0.0; 2], -0.02), "padding must be zero or more and finite, got -0.02";
+        "Obstacle::without_robot" InvalidObstacle: Obstacle::from(ball(3.0)).without_robot(&solid(), &[0.0; 2], 0.02), "a Sphere has no points of its own: expected a PointCloud or a Grid";
+        "Obstacle::without_robot" Interrupted: interruptible(|| false, || seen().without_robot(&solid(), &[0.0; 2], 0.02)), "interrupted before the end";
         "Scene::nearest" WrongLength: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[0.0]), "joint angles of robot 'planar2': expected 2 joints, got 1";
         "Scene::nearest" NotFinite: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[NAN; 2]), "joint angles must be finite, but joint 'joint_1' is NaN";
         "Scene::which_are_clear" OutOfRange: Scene::new(&solid(), vec![ball(3.0)]).unwrap().which_are_clear(&[0.0; 2], -1.0), "margin must be zero or more and finite, got -1";
@@ -76,7 +83,6 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Shape::mesh" InvalidObstacle: Shape::mesh(vec![[0.0; 3]; 3], vec![[0, 1, 3]]), "face 0 of the mesh names vertex 3, but it has 3 (from 0)";
         "Shape::point_cloud" NotFinite: Shape::point_cloud(vec![[NAN; 3]], 0.1), "points of the point cloud must be finite, but coordinate x of point 0 is NaN";
         "Shape::point_cloud" OutOfRange: Shape::point_cloud(vec![[0.0; 3]], -0.1), "radius of the point cloud must be zero or more and finite, got -0.1";
-        "Shape::point_cloud" InvalidObstacle: Shape::point_cloud(vec![], 0.1), "a point cloud needs at least one point, got none";
         "Robot::from_dh" WrongLength: Robot::from_dh("arm", &DhTable { d: vec![], ..table() }), "d in the DH table of robot 'arm': expected 1 entries, as in a, got 0";
         "Robot::from_dh" NotFinite: Robot::from_dh("arm", &DhTable { alpha: vec![NAN], ..table() }), "alpha in the DH table of robot 'arm' must be finite, but entry 0 is NaN";
         "Robot::with_base" NotFinite: panda.with_base(lost()), "base must be finite, but entry (0, 3) is NaN";
@@ -100,7 +106,6 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Shape::grid" NotFinite: Shape::grid([NAN; 3], 0.1, [1; 3], vec![true]), "origin must be finite, but coordinate x is NaN";
         "Shape::grid" OutOfRange: Shape::grid([0.0; 3], 0.0, [1; 3], vec![true]), "voxel of the grid must be positive and finite, got 0";
         "Shape::grid" WrongLength: Shape::grid([0.0; 3], 0.1, [1; 3], vec![]), "occupied voxels: expected 1 x 1 x 1 voxels, got 0";
-        "Shape::grid" InvalidObstacle: Shape::grid([0.0; 3], 0.1, [1; 3], vec![false]), "a grid needs at least one occupied voxel, got none";
         "to_bytes" Corrupt: stored::to_bytes("thing", &Unwritable), "cannot restore thing: Serde Serialization Error";
         "from_bytes" Corrupt: stored::from_bytes::<u8>("thing", &[]), "cannot restore thing: no bytes";
     }

@@ -108,7 +108,7 @@ pub(super) fn read(path: &str) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 
-fn read_urdf(path: &str) -> Result<String> {
+pub(super) fn read_urdf(path: &str) -> Result<String> {
     let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);

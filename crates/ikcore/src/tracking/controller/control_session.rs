@@ -225,7 +225,7 @@ impl ControlSession {
 
     /// Configuration and box of the last tick.
     pub(in crate::tracking) fn accepted(&self) -> Accepted<'_> {
-        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: f64::NAN }
+        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: f64::NAN, measured: None }
     }
 
     /// Returns the largest excess (rad, m) of the last command over a limit, its joint and the joint's command; `None` without
