@@ -116,7 +116,7 @@ def test_a_dead_end_is_told_with_the_joint_that_holds_the_arm() -> None:
     _, step = led_too_far_and_back(bik.Limits(velocity=1.5), recover=False)
     assert step.status == bik.Status.CAPPED
     assert step.message == (
-        "joint 'panda_joint4', at its upper limit, holds the arm 0.1818 m and 0.02470 rad away; the target is in reach: "
-        "recover=True lets the arm go to a configuration on it"
+        "joint 'panda_joint4', at its upper limit, holds the arm 0.1818 m and 0.02470 rad away; the target is in reach"
+        ": recover=True lets the arm go to a configuration on it"
     )
     assert pickle.loads(pickle.dumps(step)).message == step.message

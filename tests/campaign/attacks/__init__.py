@@ -23,8 +23,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, dead_ends, motion, clearance, own_points),
-    *(readers, xacro_files, calibration, calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, streams, dead_ends, motion, clearance),
+    *(own_points, readers, xacro_files, calibration, calls, command_line),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

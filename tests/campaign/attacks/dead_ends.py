@@ -46,7 +46,9 @@ class DeadEnds(Attack):
         way = random.normal(size=3)
         if hard and random.random() < 0.5:
             way = np.eye(3)[random.integers(3)] * random.choice([-1.0, 1.0])
-        share = random.uniform(-0.8, 0.8, arm.dof) if random.random() < 0.7 else random.choice([-0.5, 0.0, 0.5], arm.dof)
+        share = random.uniform(-0.8, 0.8, arm.dof)
+        if random.random() < 0.3:
+            share = random.choice([-0.5, 0.0, 0.5], arm.dof)
         return {
             "arm": arm.name,
             "start": tuple((0.5 * (low + high) + 0.5 * (high - low) * share).tolist()),

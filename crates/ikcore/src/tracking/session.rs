@@ -312,7 +312,9 @@ impl Session {
             _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             _ if held || self.goal_is_held() => Status::HeldByObstacle,
-            Some(last) if value >= last || self.arm.rests_at(&found.q) => Status::Capped,
+            Some(last) if value >= last => Status::Capped,
+            // Other rules may take steps as short as these.
+            _ if self.way_back.is_some() && self.arm.rests_at(&found.q) => Status::Capped,
             _ => Status::Improved,
         }
     }
