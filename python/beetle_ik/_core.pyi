@@ -2451,6 +2451,8 @@ def track(
             at its "start".
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
+        recover: whether an arm that comes no nearer to the path, at a joint limit or in a singular configuration, goes to a
+            configuration on it if one is known, as in `Tracker`.
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
@@ -2637,6 +2639,9 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+        recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
+            configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
+            a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
 
     For example:
 

@@ -18,7 +18,7 @@ ROUNDING = 1e-6  # relative, of differences of commands
 LED = """
 def target(t):
     share = min(t / out, 1.0, max(1.0 - (t - out - pause) / back, 0.0))
-    made = bik.pose(home[:3, 3] + share * way, rpy=share * turn)
+    made = np.array(bik.pose(home[:3, 3] + share * way, rpy=share * turn))
     made[:3, :3] = made[:3, :3] @ home[:3, :3]
     made[:3, 3] += noise * random.uniform(-1.0, 1.0, 3)
     return made

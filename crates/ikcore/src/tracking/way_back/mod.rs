@@ -21,7 +21,7 @@ mod search;
 mod tried;
 
 use rest_watch::RestWatch;
-use search::{DESCENT, Means, Search, descended, movable};
+use search::{DESCENT, GoalSearch, Means, descended, movable};
 use tried::{Tried, is_still};
 
 use super::away::{Away, Way};
@@ -112,7 +112,7 @@ pub(super) struct WayBack {
     goes: bool,
     state: State,
     watch: RestWatch,
-    search: Search,
+    search: GoalSearch,
     away: Option<Away>,
     /// Error at which the arm was last found at rest.
     error_at_rest: f64,
@@ -133,7 +133,7 @@ impl WayBack {
             goes,
             state: State::Following,
             watch: RestWatch::new(factor),
-            search: Search::default(),
+            search: GoalSearch::default(),
             away: None,
             error_at_rest: 0.0,
             tried: None,

@@ -6,8 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::closed_form::{ArmConfigurations, PoseFamily};
-use crate::ik::bring_near;
+use crate::ik::{bring_near, next_branches};
 use crate::math::vector::{between, distance, largest_difference};
 use crate::objective::{Bounds, Differentiable, Point};
 use crate::problem::Problem;
@@ -19,10 +18,6 @@ use crate::tracking::step_context::StepContext;
 
 /// Evaluations of a descent, and of all work in a tick.
 pub(super) const DESCENT: usize = 40;
-
-/// Values of the parameter of a redundant arm, and their number in a tick.
-const VALUES: usize = 24;
-const VALUES_IN_A_TICK: usize = 2;
 
 /// Drawn starts, of which the first half is at increasing distances, and solutions of theirs that suffice.
 const DRAWN: usize = 96;
@@ -42,7 +37,7 @@ const CRAMPED: f64 = 2.0;
 
 /// Configuration on the target.
 #[derive(Debug, Clone)]
-pub(super) struct Candidate {
+pub(super) struct GoalChoice {
     pub q: Point,
     /// Travel time (s), longer near limits.
     cost: f64,
@@ -52,9 +47,9 @@ pub(super) struct Candidate {
 
 /// Search in progress.
 #[derive(Debug, Default)]
-pub(super) struct Search {
+pub(super) struct GoalSearch {
     /// Configurations found, the quickest to reach first.
-    pub found: SmallVec<[Candidate; KEPT]>,
+    pub found: SmallVec<[GoalChoice; KEPT]>,
     /// Values and starts tried.
     tried: usize,
     /// Solutions found so far.
@@ -70,7 +65,7 @@ pub(super) struct Means<'a> {
     pub monitor: &'a mut dyn Monitor,
 }
 
-impl Search {
+impl GoalSearch {
     /// Begins anew.
     pub fn restart(&mut self) {
         self.found.clear();
@@ -85,77 +80,45 @@ impl Search {
             Some((target @ Target::Pose(pose), criterion)) if criterion.fixes_pose(target) => Some(pose),
             _ => None,
         };
-        match pose.filter(|_| context.robot.solves_at_once() == Some(true)) {
-            Some(pose) => match context.robot.family(pose) {
-                Some(family) => self.look_at_values(&family, context, &bounds, means),
-                None => {
-                    let mut branches = ArmConfigurations::none();
-                    if !context.robot.approximate_branches(pose, &mut branches) {
-                        context.robot.likely_branches(pose, &mut branches);
-                    }
-                    self.take_all(&branches, context, &bounds, means);
-                    true
-                }
-            },
-            None => self.descend_from_drawn(context, &bounds, means),
+        let ranges = finite(context, &bounds);
+        let mut tried = self.tried;
+        let take = |q: Point| self.take_branch(q, context, &bounds, means);
+        let ended = pose.and_then(|pose| next_branches(context.robot, pose, &ranges, &mut tried, take));
+        match ended {
+            Some(ended) => {
+                self.tried = tried;
+                ended
+            }
+            None => self.descend_from_drawn(context, (&bounds, &ranges), means),
         }
     }
 
-    /// Takes the branches of a redundant arm at the next values of its parameter. Returns whether these were the last.
-    fn look_at_values(
-        &mut self,
-        family: &PoseFamily<'_>,
-        context: &StepContext<'_>,
-        bounds: &Bounds,
-        means: &mut Means<'_>,
-    ) -> bool {
-        let ranges = finite(context, bounds);
-        let limits = family.limits(ranges.lower(), ranges.upper());
-        let arcs = family.arcs(&limits);
-        let mut values = arcs.spread(VALUES).skip(self.tried);
-        let mut branches = ArmConfigurations::none();
-        for value in values.by_ref().take(VALUES_IN_A_TICK) {
-            family.likely_at(value, &limits, &mut branches);
-            self.take_all(&branches, context, bounds, means);
-            self.tried += 1;
+    /// Takes a configuration of the closed form, if it is inside the limits and the tick has work left.
+    fn take_branch(&mut self, mut q: Point, context: &StepContext<'_>, bounds: &Bounds, means: &mut Means<'_>) {
+        let left = DESCENT.saturating_sub(self.evaluations - self.begun);
+        bring_near(context.robot, bounds, context.q, &mut q);
+        let mut inside = q.clone();
+        bounds.clip(&mut inside);
+        if left < 2 || !(largest_difference(&inside, &q) <= ROUNDING) {
+            return;
         }
-        values.next().is_none()
-    }
-
-    /// Takes configurations of the closed form, as far as they are inside the limits.
-    fn take_all(
-        &mut self,
-        branches: &ArmConfigurations,
-        context: &StepContext<'_>,
-        bounds: &Bounds,
-        means: &mut Means<'_>,
-    ) {
-        for index in 0..branches.len() {
-            let left = DESCENT.saturating_sub(self.evaluations - self.begun);
-            if left < 2 {
-                return;
-            }
-            let mut q: Point = branches.columns().iter().map(|values| values[index]).collect();
-            bring_near(context.robot, bounds, context.q, &mut q);
-            let mut inside = q.clone();
-            bounds.clip(&mut inside);
-            if !(largest_difference(&inside, &q) <= ROUNDING) {
-                continue;
-            }
-            self.evaluations += 1;
-            if context.aims.assess(context.robot, &inside).score.solved {
-                self.offer(inside, context, bounds);
-            } else {
-                self.take_descent(&inside, left - 1, context, bounds, means);
-            }
+        self.evaluations += 1;
+        if context.aims.assess(context.robot, &inside).score.solved {
+            self.offer(inside, context, bounds);
+        } else {
+            self.take_descent(&inside, left - 1, context, bounds, means);
         }
     }
 
     /// Descends from the next drawn start. Returns whether it was the last.
-    fn descend_from_drawn(&mut self, context: &StepContext<'_>, bounds: &Bounds, means: &mut Means<'_>) -> bool {
+    fn descend_from_drawn(
+        &mut self,
+        context: &StepContext<'_>,
+        (bounds, ranges): (&Bounds, &Bounds),
+        means: &mut Means<'_>,
+    ) -> bool {
         self.tried += 1;
         let share = (2.0 * self.tried as f64 / DRAWN as f64).min(1.0);
-        let ranges = finite(context, bounds);
         let ends = ranges.lower().iter().zip(ranges.upper());
         let draw = |(q, (lower, upper)): (&f64, (&f64, &f64))| between(*q, means.rng.uniform_in(*lower, *upper), share);
         let start: Point = context.q.iter().zip(ends).map(draw).collect();
@@ -185,11 +148,11 @@ impl Search {
         bounds.clip(&mut q);
         self.solutions += 1;
         let candidate =
-            Candidate { cost: travel_time(context, &q) * cramped(bounds, &q), distance: distance(context.q, &q), q };
+            GoalChoice { cost: travel_time(context, &q) * cramped(bounds, &q), distance: distance(context.q, &q), q };
         if !(candidate.cost < f64::INFINITY) {
             return;
         }
-        let is_near = |other: &Candidate| largest_difference(&other.q, &candidate.q) < APART;
+        let is_near = |other: &GoalChoice| largest_difference(&other.q, &candidate.q) < APART;
         let known = self.found.iter().position(is_near);
         match known {
             Some(known) if candidate.is_before(&self.found[known]) => {
@@ -209,7 +172,7 @@ impl Search {
     }
 }
 
-impl Candidate {
+impl GoalChoice {
     fn is_before(&self, other: &Self) -> bool {
         (self.cost, self.distance) < (other.cost, other.distance)
     }
