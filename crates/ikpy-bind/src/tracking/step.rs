@@ -211,8 +211,7 @@ impl PyStep {
         };
         // A lock is the reason why the arm stays away.
         let step = if lock.is_some() { Step { away: None, ..self.core } } else { self.core };
-        let message =
-            step.message_with(advice, &self.outside, |j| self.joints.get(j).cloned().unwrap_or_default());
+        let message = step.message_with(advice, &self.outside, |j| self.joints.get(j).cloned().unwrap_or_default());
         let message = match &self.drift {
             Some(drift) => format!("{}; {drift}", said(&message)).into(),
             None => message,
