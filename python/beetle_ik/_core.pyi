@@ -1734,7 +1734,45 @@ def calibrate(
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
     seed: int = 0,
-) -> Calibration: ...
+) -> Calibration:
+    """Finds the geometry of a robot as it is built from measurements, by weighted least squares.
+
+    Args:
+        robot: the model; its limits decide nothing.
+        q: joint angles as the controller reports them (m, n) (rad, m); for distances between two positions (m, 2, n).
+        measured: what was measured in each of the m configurations:
+
+            - positions of the tip (m, 3) (m), or poses (m, 4, 4), in any frame, such as a tracker's;
+            - with `camera`: poses of a board as the camera sees it (m, 4, 4), or with `board` and `lens` its image points (m, k, 2)
+              (pixels), NaN for a point that is not seen;
+            - with `center`: distances of the tip from a fixed point (m,) (m), as by a ball bar;
+            - with `plane`: heights of the tip above a plane (m,) (m), zero for contacts;
+            - with q (m, 2, n): distances between the tip's positions (m,) (m).
+        fit: what may differ from the model: "offsets" (the zero of each joint), "links" (the transform before each joint but the first),
+            "tool", "base". With a camera, "tool" and "base" stand for the poses of camera and board. None: all; with a camera "tool" and
+            "base", which is hand-eye calibration.
+        sigma: standard deviation of the noise (m or pixels): a number, for poses also of angles (rad) or (length, angle), or one row per measurement, (m,)
+            or (m, 2). None: estimated from the residuals.
+        robust: whether measurements that do not belong with the others are found and left out.
+        camera: "fixed": beside the robot, the board on the tip; "hand": on the tip, the board beside the robot. None: no camera.
+        board: points of the board in its own frame (k, 3) (m).
+        lens: focal lengths and principal point (fx, fy, cx, cy) (pixels) of a camera without distortion.
+        center: fixed end of the ball bar (3,) (m), a guess in the frame of the robot's base.
+        plane: (nx, ny, nz, h), a guess: the plane of the points p with n . p = h (m) in the frame of the robot's base.
+        suggest: number of further configurations to suggest, those that would tell most (at most 100): inside the limits and, with a
+            camera, where it sees the board.
+        obstacles: what suggested configurations keep clear of, as the links of the arm keep clear of each other; an empty list checks the
+            links alone, None nothing.
+        margin: distance to keep (m); None: 0.001.
+        seed: seed of the candidates among which they are chosen; the same seed gives the same bits.
+
+    Returns:
+        A `Calibration`, whose `robot` is the arm as it is built.
+
+    Raises:
+        InvalidInputError: too few measurements, configurations that are all alike, millimetres for metres, degrees for radians, a mirrored
+            frame; wrong shape; NaN.
+    """
 def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],
@@ -1866,74 +1904,131 @@ def map_chunks(
 
 @final
 class Calibration:
+    """The arm as it is built, and what is known of it. Errors of image points are in pixels, others in m."""
+
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """The robot with the geometry, base and tool that were found. It keeps joints, limits and collision shapes."""
     @property
-    def success(self) -> bool: ...
+    def success(self) -> bool:
+        """Whether the descent ended at an optimum."""
     @property
-    def message(self) -> str: ...
+    def message(self) -> str:
+        """A sentence that says how good the result is, what is not known, and what to try."""
     @property
-    def parameters(self) -> dict[str, float]: ...
+    def parameters(self) -> dict[str, float]:
+        """Deviations from the model by name, in the order of `covariance` (m, rad): "offset JOINT" is added to the joint's angle; "link
+        JOINT x" to "rz" are translation and rotation vector of the correction of the transform before the joint, in the frame of the
+        joint; "base x" and so on likewise of base and tool, of camera and board, centre and plane.
+        """
     @property
-    def deviations(self) -> dict[str, float]: ...
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations of `parameters` by name (m, rad)."""
     @property
-    def covariance(self) -> _Array: ...
+    def covariance(self) -> _Array:
+        """Covariance of `parameters` (p, p) (m, rad). Along combinations that the measurements leave open it is that of the prior: how far
+        arms usually are from their models.
+        """
     @property
-    def unit(self) -> str: ...
+    def unit(self) -> str:
+        """Unit of the errors: "m", or "pixels" for image points."""
     @property
-    def rms_before(self) -> float: ...
+    def rms_before(self) -> float:
+        """Root mean square of the errors of the robot as it was given. All errors leave out `outliers`."""
     @property
-    def rms_placed(self) -> float: ...
+    def rms_placed(self) -> float:
+        """The same with only base and tool fitted, as far as they are to be."""
     @property
-    def rms_after(self) -> float: ...
+    def rms_after(self) -> float:
+        """The same of the calibrated robot."""
     @property
-    def rms_held_out(self) -> float: ...
+    def rms_held_out(self) -> float:
+        """The same of measurements held out one at a time: what to expect of new ones."""
     @property
-    def rotation_rms_before(self) -> float: ...
+    def rotation_rms_before(self) -> float:
+        """Root mean square of the rotation errors of the robot as it was given (rad); NaN without orientations."""
     @property
-    def rotation_rms_after(self) -> float: ...
+    def rotation_rms_after(self) -> float:
+        """The same of the calibrated robot (rad)."""
     @property
-    def rotation_rms_held_out(self) -> float: ...
+    def rotation_rms_held_out(self) -> float:
+        """The same of measurements held out one at a time (rad)."""
     @property
-    def errors_before(self) -> _Array: ...
+    def errors_before(self) -> _Array:
+        """Error of each measurement (m,) with the robot as it was given."""
     @property
-    def errors_after(self) -> _Array: ...
+    def errors_after(self) -> _Array:
+        """Error of each measurement (m,) with the calibrated robot."""
     @property
-    def outliers(self) -> list[int]: ...
+    def outliers(self) -> list[int]:
+        """Rows of measurements that do not belong with the others and were left out."""
     @property
-    def sigma(self) -> tuple[float, float]: ...
+    def sigma(self) -> tuple[float, float]:
+        """Noise of a measurement: as given, for the first row, or estimated from the residuals (length, angle (rad)); the angle is NaN without
+        orientations.
+        """
     @property
-    def identifiable(self) -> Identifiability: ...
+    def identifiable(self) -> Identifiability:
+        """What the measurements tell about the parameters."""
     @property
-    def base(self) -> _Array: ...
+    def base(self) -> _Array:
+        """Pose of the robot's base (4, 4) in the frame of the measurements, for `Robot.with_base`."""
     @property
-    def tool(self) -> _Array: ...
+    def tool(self) -> _Array:
+        """Pose of the tool (4, 4) in the frame of the tip link, for `Robot.with_tool`."""
     @property
-    def camera(self) -> _Array | None: ...
+    def camera(self) -> _Array | None:
+        """Pose of the camera (4, 4): in the frame of the robot's base if it is fixed, in that of the tip if it is on the arm; None without."""
     @property
-    def board(self) -> _Array | None: ...
+    def board(self) -> _Array | None:
+        """Pose of the board (4, 4): in the frame of the tip if the camera is fixed, else in that of the robot's base; None without a camera."""
     @property
-    def center(self) -> _Array | None: ...
+    def center(self) -> _Array | None:
+        """Centre of the ball bar (3,) (m) in the frame of the robot's base; None without."""
     @property
-    def plane(self) -> _Array | None: ...
+    def plane(self) -> _Array | None:
+        """Plane (nx, ny, nz, h) (4,) in the frame of the robot's base; None without."""
     @property
-    def suggested(self) -> _Array: ...
+    def suggested(self) -> _Array:
+        """Configurations to measure too, the ones that would tell most (k, n), or (k, 2, n) for distances of pairs (rad, m)."""
     @property
-    def iterations(self) -> int: ...
-    def to_urdf(self, path_or_xml: str | os.PathLike[str]) -> str: ...
+    def iterations(self) -> int:
+        """Steps of the descent."""
+    def to_urdf(self, path_or_xml: str | os.PathLike[str]) -> str:
+        """Returns a URDF with the geometry of `robot`: `path_or_xml`, which the model was loaded from, with the origins of the joints that
+        changed, and every other byte as it was. The zero of a joint becomes a part of its origin. No URDF has base and tool: give them to
+        the loaded robot by `with_base(c.base)` and `with_tool(c.tool)`.
+
+        Args:
+            path_or_xml: the file, or its text.
+
+        Raises:
+            UrdfError: the text of another robot, or no URDF.
+        """
 
 @final
 class Identifiability:
+    """What measurements tell about the parameters of a calibration."""
+
     @property
-    def rank(self) -> int: ...
+    def rank(self) -> int:
+        """Number of independent combinations of parameters that the measurements determine."""
     @property
-    def possible(self) -> int: ...
+    def possible(self) -> int:
+        """Number that configurations all over the joint ranges would determine. The rest has no effect on such measurements at any
+        configuration; of all models that differ in it alone, the one nearest to the given robot is taken.
+        """
     @property
-    def condition(self) -> float: ...
+    def condition(self) -> float:
+        """Largest over smallest singular value of the combinations determined. Below some hundreds the configurations are well chosen."""
     @property
-    def singular_values(self) -> _Array: ...
+    def singular_values(self) -> _Array:
+        """Singular values of the weighted Jacobian (p,), largest first: the usual deviation of a combination over its standard deviation
+        here.
+        """
     @property
-    def unknown(self) -> list[str]: ...
+    def unknown(self) -> list[str]:
+        """Combinations that the measurements leave open and other configurations would tell, by their main parameters."""
 
 @final
 class SelfMotion:

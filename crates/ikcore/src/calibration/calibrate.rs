@@ -334,8 +334,3 @@ fn check_sigma(measured: &Measured, sigma: Option<&[[f64; 2]]>) -> Result<()> {
         Err(Error::out_of_range("standard deviation of a measurement", "positive and finite", *value))
     })
 }
-
-/// Poses of the robot's tip at each measurement; `q` of the first configuration of each.
-pub(super) fn tips(robot: &Robot, qs: &[f64]) -> Vec<Pose> {
-    qs.chunks(robot.dof()).map(|q| Pose::from(robot.tip(q))).collect()
-}

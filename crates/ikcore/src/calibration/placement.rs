@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use super::arm_model::Outside;
 use super::board_pose::board_pose;
-use super::calibrate::tips;
 use super::measured::{CameraPlace, Measured};
 use super::start::{aligned, both_ends, first_end};
 use crate::error::Result;
@@ -80,4 +79,9 @@ fn median_error(robot: &Robot, qs: &[f64], measured: &Measured) -> f64 {
     };
     errors.sort_by(f64::total_cmp);
     errors[errors.len() / 2]
+}
+
+/// Poses of the tip at each configuration.
+fn tips(robot: &Robot, qs: &[f64]) -> Vec<Pose> {
+    qs.chunks(robot.dof()).map(|q| Pose::from(robot.tip(q))).collect()
 }
