@@ -199,7 +199,7 @@ fn missing_limits_are_told_from_zeros() {
     assert_eq!(
         error_after("<limit lower=\"-1\" upper=\"2\" velocity=\"1.5\"/>", ""),
         "URDF line 5: joint 'a' is revolute and has no <limit>, which URDF requires: give lower and upper, or write \
-         type=\"continuous\""
+         <joint type=\"continuous\">"
     );
     assert_eq!(
         error_after("<limit lower=\"0\" upper=\"0.5\" velocity=\"0.2\"/>", ""),
