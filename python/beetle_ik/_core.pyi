@@ -2,7 +2,7 @@
 # core, then build and run `python tools/stub_docstrings.py`.
 #
 # Letters in the shape comments: n = degrees of freedom, m = items of a batch, k = samples in time.
-# SI units and radians throughout; results are read-only.
+# SI units and radians throughout; attributes of results are read-only.
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -76,6 +76,9 @@ class CallError(InvalidInputError, TypeError):
     """A call that does not fit its signature: an argument of the wrong type, one that is missing or unknown. Also a
     `TypeError`, which Python raises there.
     """
+
+class UnitsWarning(UserWarning):
+    """A value that looks like degrees where radians are due, or millimetres for metres. The call has used it as given."""
 
 # --- robots -------------------------------------------------------------------------------------
 
@@ -424,6 +427,8 @@ class Robot:
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
         model is wrong.
         """
+    def _doubt_degrees(self) -> None:
+        """Doubts limits that a MuJoCo model gives in degrees by default."""
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
         """Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`."""
@@ -508,13 +513,14 @@ class VelocityEllipsoid:
         """
 
 def pose(
-    position: ArrayLike,
+    position: ArrayLike | None = None,
     *,
     xyzw: ArrayLike | None = None,
     wxyz: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
     matrix: _Pose | None = None,
+    degrees: bool = False,
 ) -> _Array:
     """Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 
@@ -627,6 +633,8 @@ class Status(IntEnum):
     - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
     - `IN_COLLISION`: Nearer than the margin to an obstacle, or with two links nearer to each other; the target may be reached.
     - `HELD_BY_OBSTACLE`: A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.
+    - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
+    - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     """
 
     SOLVED = 0
@@ -645,6 +653,8 @@ class Status(IntEnum):
     HELD_IN_REGION = 13
     IN_COLLISION = 14
     HELD_BY_OBSTACLE = 15
+    ROTATION_GIVEN_UP = 16
+    POSITION_GIVEN_UP = 17
 
 @final
 class APPS:
@@ -1355,6 +1365,10 @@ class Pose(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        first: "position" or "orientation", the part that is met exactly where the whole pose cannot be met; the other
+            comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
+            "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
+            or a region.
     """
 
     def __new__(
@@ -1364,7 +1378,13 @@ class Pose(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        first: str | None = None,
     ) -> Pose: ...
+    @property
+    def first(self) -> str | None:
+        """The part that is met exactly where the whole pose cannot be met: "position" or "orientation"; None: "position" for an arm
+        with fewer than six joints.
+        """
 
 @final
 class Position(Task):
@@ -1442,7 +1462,7 @@ class Goal:
     """
 
     @property
-    def weight(self) -> float:
+    def weight(self) -> float | _Array:
         """Weight relative to other goals."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
@@ -1455,7 +1475,7 @@ class Posture(Goal):
         weight: weight relative to other goals.
     """
 
-    def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
+    def __new__(cls, posture: ArrayLike, *, weight: ArrayLike = 1.0) -> Posture: ...
     @property
     def posture(self) -> _Array:
         """The posture (n,) (rad, m)."""
@@ -1704,6 +1724,24 @@ def solve_all(
         (8, True)
     """
 
+def calibrate(
+    robot: Robot,
+    q: ArrayLike,
+    measured: ArrayLike,
+    *,
+    fit: Sequence[str] | None = None,
+    sigma: ArrayLike | None = None,
+    robust: bool = True,
+    camera: str | None = None,
+    board: ArrayLike | None = None,
+    lens: ArrayLike | None = None,
+    center: ArrayLike | None = None,
+    plane: ArrayLike | None = None,
+    suggest: int = 0,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    seed: int = 0,
+) -> Calibration: ...
 def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],
@@ -1832,6 +1870,77 @@ def map_chunks(
         the lowest first; then two arrays (x, y, z) float32 for the best configuration found, NaN where there is none,
         or None without `quality`.
     """
+
+@final
+class Calibration:
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def success(self) -> bool: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def deviations(self) -> dict[str, float]: ...
+    @property
+    def covariance(self) -> _Array: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def rms_before(self) -> float: ...
+    @property
+    def rms_placed(self) -> float: ...
+    @property
+    def rms_after(self) -> float: ...
+    @property
+    def rms_held_out(self) -> float: ...
+    @property
+    def rotation_rms_before(self) -> float: ...
+    @property
+    def rotation_rms_after(self) -> float: ...
+    @property
+    def rotation_rms_held_out(self) -> float: ...
+    @property
+    def errors_before(self) -> _Array: ...
+    @property
+    def errors_after(self) -> _Array: ...
+    @property
+    def outliers(self) -> list[int]: ...
+    @property
+    def sigma(self) -> tuple[float, float]: ...
+    @property
+    def identifiable(self) -> Identifiability: ...
+    @property
+    def base(self) -> _Array: ...
+    @property
+    def tool(self) -> _Array: ...
+    @property
+    def camera(self) -> _Array | None: ...
+    @property
+    def board(self) -> _Array | None: ...
+    @property
+    def center(self) -> _Array | None: ...
+    @property
+    def plane(self) -> _Array | None: ...
+    @property
+    def suggested(self) -> _Array: ...
+    @property
+    def iterations(self) -> int: ...
+    def to_urdf(self, path_or_xml: str | os.PathLike[str]) -> str: ...
+
+@final
+class Identifiability:
+    @property
+    def rank(self) -> int: ...
+    @property
+    def possible(self) -> int: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def singular_values(self) -> _Array: ...
+    @property
+    def unknown(self) -> list[str]: ...
 
 @final
 class SelfMotion:
@@ -2883,7 +2992,11 @@ class Mesh(Obstacle):
 
 @final
 class PointCloud(Obstacle):
-    """A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m)."""
+    """A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m). A cloud without points
+    touches nothing.
+
+    The robot is often in the picture: `without_robot` takes its own points out.
+    """
 
     def __new__(cls, points: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> PointCloud: ...
     @property
@@ -2892,11 +3005,36 @@ class PointCloud(Obstacle):
     @property
     def radius(self) -> float:
         """Radius of the ball about each point (m)."""
+    @property
+    def removed(self) -> int:
+        """Number of the robot's own points that `without_robot` removed to make this cloud; 0 for other clouds, copies and
+        files.
+        """
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> PointCloud:
+        """Returns the cloud without the robot's own points: those whose ball is at most `padding` from a body of the robot.
+
+        All bodies count: those of the base, of held and branched-off links, and attached shapes (`robot.with_attached`). The
+        distance is that of `clearance`, so after this every body is more than `padding` from the cloud. `removed` of the new cloud
+        is the number of points that are gone.
+
+        Something that the robot touches or holds loses its points within `padding` too: attach what is in the hand.
+
+        Args:
+            robot: an arm with bodies.
+            q: joint positions (n,) at which the cloud was taken (rad, m).
+            padding: largest distance (m) of the robot's own points from its model: the noise of the sensor, and errors of model,
+                calibration and time.
+
+        Raises:
+            InvalidInputError: a robot without bodies, wrong joint positions, or a padding that is negative or not finite.
+        """
 
 @final
 class Grid(Obstacle):
     """An occupancy grid: cubic voxels with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
-    `occupied` is a boolean array (nx, ny, nz).
+    `occupied` is a boolean array (nx, ny, nz). A grid without occupied voxels touches nothing.
+
+    The robot is often in what was measured: `without_robot` takes its own voxels out.
     """
 
     def __new__(
@@ -2911,6 +3049,23 @@ class Grid(Obstacle):
     @property
     def occupied(self) -> NDArray[np.bool_]:
         """Whether each voxel is occupied (nx, ny, nz)."""
+    @property
+    def removed(self) -> int:
+        """Number of the robot's own voxels that `without_robot` removed to make this grid; 0 for other grids, copies and files."""
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> Grid:
+        """Returns the grid without the robot's own voxels: those that are at most `padding` from a body of the robot.
+
+        All bodies count, as in `PointCloud.without_robot`. The distance is that of `clearance` from the voxel alone. `removed` of
+        the new grid is the number of voxels that are free now.
+
+        Args:
+            robot: an arm with bodies.
+            q: joint positions (n,) at which the grid was measured (rad, m).
+            padding: largest distance (m) of the robot's own voxels from its model.
+
+        Raises:
+            InvalidInputError: a robot without bodies, wrong joint positions, or a padding that is negative or not finite.
+        """
 
 @final
 class Body:
@@ -2928,9 +3083,9 @@ class Body:
 
 @final
 class PreparedObstacles:
-    """The obstacles of a `Scene`, read and prepared once."""
+    """The obstacles of a `Scene`, read and prepared once; `carried` are link and name of each body that the robot carries there."""
 
-    def __new__(cls, obstacles: Sequence[Obstacle]) -> PreparedObstacles: ...
+    def __new__(cls, obstacles: Sequence[Obstacle], carried: Sequence[Sequence[str]] = ()) -> PreparedObstacles: ...
 
 @final
 class Moving:
@@ -3145,6 +3300,7 @@ def time_optimal(
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
+    tolerance: float | ArrayLike | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
@@ -3164,15 +3320,20 @@ def time_optimal(
             no longer improves.
         start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
         joint_names: n names; None: "q1", "q2" and so on.
+        tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
+            parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
+            is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+
+    Equal consecutive rows, as a recording has at rest, are one waypoint.
 
     Returns:
-        A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
-        quintic segments that meet the path at their ends.
+        A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
+        points. With jerk limits it consists of quintic segments that meet the path at their ends.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+        InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
 
     For example:
 

@@ -66,6 +66,10 @@ SPOILED = {
         "a configuration of the curve misses the target",
     ),
     "paths_followed": ("plan = Changed(plan, accuracy=-1.0)", "the plan is farther from the path than it says"),
+    "starts_as_read": (
+        "tracked = [q + 0.3 * (i == 5) for i, q in enumerate(tracked)]",
+        "a tick exceeds the velocity limit on the way inside",
+    ),
     "plants": ("found = Changed(found, q=10.0 * found.q)", "the velocity is beyond its limit"),
     "poses": (
         "poses = poses + 1e-9",
@@ -79,9 +83,17 @@ SPOILED = {
         "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
         "a pose that the arm has is called out of reach",
     ),
+    "calibrations": (
+        "found = Changed(found, errors_after=found.errors_after + 1e-3)",
+        "the errors after are not as told",
+    ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
         "q is not finite",
+    ),
+    "place_first": (
+        "solution = Changed(solution, q=solution.q + 1e-4)",
+        "position_error is not the error",
     ),
     "complete_sets": (
         "found = Changed(found, q=found.q[1:])",
@@ -145,6 +157,10 @@ SPOILED = {
         "ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]",
         "the clearance of a tick is above the true one",
     ),
+    "own_points": (
+        "kept = kept[1:]\nremoved += 1",
+        "a point is kept, or taken out, against the padding",
+    ),
     "urdf": (
         "pose = pose * nan",
         "a robot was read whose poses are not finite",
@@ -160,6 +176,10 @@ SPOILED = {
     "scene_json": (
         "again = bik.Scene()",
         "a saved scene is loaded differently",
+    ),
+    "units": (
+        "said = ['one', 'too', 'many']",
+        "a value in another unit does not warn once",
     ),
     "csv": (
         "again = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]])",

@@ -51,10 +51,20 @@ pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted
     call(py, "beetle_ik.robot_files.xacro", "expand", (path, package_dirs, trusted))?.extract()
 }
 
+/// Calls `beetle_ik.calls.labelled.labelled(value)`: names and numbers of a value whose numbers have names.
+pub fn labelled<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<(Vec<String>, Bound<'py, PyAny>)>> {
+    call(value.py(), "beetle_ik.calls.labelled", "labelled", (value,))?.extract()
+}
+
 /// Logs a long call at level INFO under "beetle_ik".
 pub fn log(py: Python<'_>, function: &str, message: &str) -> PyResult<()> {
     let message = format!("{function}: {message}");
     call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
+}
+
+/// Calls `beetle_ik.calls.units.warn(message)`, which raises a `UnitsWarning` in the caller's file.
+pub fn warn_of_units(py: Python<'_>, message: &str) -> PyResult<()> {
+    call(py, "beetle_ik.calls.units", "warn", (message,)).map(|_| ())
 }
 
 /// Makes a progress bar on the terminal.

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, row, shape_text, shortened, table, times, vector};
+use crate::convert::{Array, array, copied, counted, is_list, own, row, shape_text, shortened, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
@@ -77,7 +77,7 @@ impl PyTrajectory {
     }
 
     /// Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
-    /// are given, quintic if accelerations qdd (k, n) are given too.
+    /// are given, quintic if accelerations qdd (k, n) are given too. A table of pandas gives its columns as `joint_names`.
     #[staticmethod]
     #[pyo3(signature = (time, q, *, qd=None, qdd=None, joint_names=None))]
     fn from_samples(
@@ -88,6 +88,8 @@ impl PyTrajectory {
         #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let (py, time) = (time.py(), vector("time", time)?);
+        let named = if is_list(q) { None } else { python_calls::labelled(q)? };
+        let (columns, q) = named.map_or_else(|| (None, q.clone()), |(columns, q)| (Some(columns), q));
         let read = |what: &str, value: &Bound<'_, PyAny>| {
             let values = array(what, value)?;
             match values.shape() {
@@ -98,10 +100,10 @@ impl PyTrajectory {
                 }
             }
         };
-        let (q, n) = read("q", q)?;
+        let (q, n) = read("q", &q)?;
         let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
         let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
-        let joints = names(joint_names, n)?;
+        let joints = names(joint_names.or(columns), n)?;
         long_call(py, || Trajectory::from_samples(joints, &time, &q, qd.as_deref(), qdd.as_deref())).map(Self)
     }
 
@@ -152,19 +154,19 @@ impl PyTrajectory {
 
     /// Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times.
     fn max_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_velocity()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_velocity()))?)))
     }
 
     /// Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
     /// velocity at knots are not included.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_acceleration()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_acceleration()))?)))
     }
 
     /// Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
     /// at knots are not included.
     fn max_jerk<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_jerk()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_jerk()))?)))
     }
 
     /// Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped.
@@ -182,7 +184,7 @@ impl PyTrajectory {
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>, Array<'py>, Array<'py>)> {
         let times = self.0.sample_times(dt).map_err(raise)?;
         let (q, qd, qdd) = self.at_times(py, &times, false)?;
-        Ok((row(py, times), q, qd, qdd))
+        Ok((own(row(py, times)), q, qd, qdd))
     }
 
     /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
@@ -265,6 +267,7 @@ impl PyTrajectory {
             long_call(py, fill)?
         }
         let shape = if single { vec![n] } else { vec![times.len(), n] };
-        Ok((table(py, q, &shape)?, table(py, qd, &shape)?, table(py, qdd, &shape)?))
+        let made = |values| table(py, values, &shape).map(own);
+        Ok((made(q)?, made(qd)?, made(qdd)?))
     }
 }

@@ -12,7 +12,9 @@ pub fn spelt(setting: &Setting) -> String {
     let words = match setting {
         Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
         Setting::Method(name) => return format!("method=\"{name}\""),
+        Setting::First(part) => return format!("task=tasks.Pose(first=\"{part}\")"),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
+        Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),
         Setting::Budget => "budget in stop=Stop(...)",
         Setting::MethodWithSolver => "method=TPBSO(solver=...)",
         Setting::Tip => "tip=",
@@ -24,6 +26,10 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::FreeStart => "free_start=True",
         Setting::StartVelocity => "start_qd",
         Setting::StartConfiguration => "start_q",
+        Setting::IgnoreExtra => "ignore_extra=True",
+        Setting::StartSlack => "start_slack",
+        Setting::Wrap => "robot.wrap(q) takes whole turns off and brings it inside",
+        Setting::Clip => "robot.clip(q) moves it to the limit, which changes the pose",
         Setting::Retime => "plan.retime(limits)",
         Setting::Margin => "margin=",
         Setting::Surroundings => "obstacles= (a list, which may be empty) or self_collision=True",
@@ -37,7 +43,10 @@ pub fn spelt(setting: &Setting) -> String {
         }
         Setting::CapsulesAlone => "robot.with_capsules(robot.capsules)",
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
+        Setting::Attach => "scene.attach_to(robot)",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
+        Setting::RadiansFromDegrees => "np.radians converts degrees",
+        Setting::AnglesInDegrees => "degrees=True takes degrees",
         _ => return setting.to_string(),
     };
     words.into()

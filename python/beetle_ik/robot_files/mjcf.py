@@ -51,6 +51,7 @@ def robot(
             raise InvalidInputError(problem) from None
     made = made.with_held(reader.rests(made, hold or {}))
     reader.require_kept(made)
+    made._doubt_degrees()
     return made
 
 

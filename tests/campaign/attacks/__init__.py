@@ -4,25 +4,29 @@ from importlib import import_module
 
 from ..attack import Attack
 from . import (
+    calibration,
     calls,
     clearance,
     command_line,
     described,
     kinematics,
     motion,
+    own_points,
     readers,
     round_poses,
     searching,
     several,
     solving,
+    starts,
     streams,
     tracking,
+    units,
     xacro_files,
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(described, calls, command_line),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, own_points),
+    *(readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -155,7 +155,10 @@ fn what_cannot_be_held_is_named() {
     let held = "joints that it holds: lift, grip";
     assert_eq!(message(("grap", 0.0)), format!("robot 'tree' holds no joint 'grap' (did you mean 'grip'?); {held}"));
     assert_eq!(message(("elbow", 0.0)), format!("robot 'tree' holds no joint 'elbow' (it is entry 1 of q); {held}"));
-    assert_eq!(message(("grip", 0.05)), "hold: joint 'grip' at 0.05 is outside its limits [0, 0.04]");
+    assert_eq!(
+        message(("grip", 0.05)),
+        "hold: joint 'grip' at 0.05 is outside its limits [0, 0.04] by 0.01000 m: move it inside"
+    );
     assert_eq!(message(("grip", f64::NAN)), "held joints must be finite, but joint 'grip' is NaN");
     let bare = Robot::planar(&[1.0]).unwrap().with_held([("x", 0.0)]).unwrap_err().to_string();
     assert_eq!(bare, "robot 'planar1' holds no joint 'x'; joints that it holds: none");
@@ -228,6 +231,9 @@ fn a_grasped_part_moves_with_its_link_and_may_touch_what_it_is_told_to() {
         arm.with_attached("flange", &floor, &[], None).unwrap_err().to_string(),
         "a HalfSpace cannot be attached: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh can"
     );
+    let flat = Shape::ellipse([0.0, 0.0], [0.2, 0.1], 0.0).unwrap();
+    let refused = arm.with_attached("flange", &flat, &[], None).unwrap_err().to_string();
+    assert!(refused.starts_with("an Ellipse cannot be attached: a Sphere"), "{refused}");
     let taken = arm.with_attached("flange", &part, &[], Some("link_3")).unwrap_err().to_string();
     assert_eq!(taken, "robot 'panda': two links are named 'link_3'");
     assert!(arm.with_attached("flang", &part, &[], None).unwrap_err().to_string().contains("did you mean 'flange'?"));

@@ -8,10 +8,11 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::message::{Message, message};
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, Clearance, Surroundings, clear_in_words};
+use crate::obstacle::{ClearSpace, Clearance, Measured, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
+use crate::wording::number;
 
 /// Best configuration found, with the report on its search, whose fields are read like those of the solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,6 +32,8 @@ pub struct SolveReport {
     pub error: TipError,
     /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
+    /// What was measured of the robot itself, if that keeps the solution in collision.
+    pub own_points: Option<Measured>,
     /// Nearest two bodies, if obstacles or self-collision were checked; `None` while deferred by
     /// [`SolveOptions::nearest_later`](super::SolveOptions).
     pub nearest: Option<Box<Nearest>>,
@@ -96,6 +99,7 @@ impl SolveReport {
             status,
             error: TipError { position: f64::NAN, rotation: f64::NAN },
             obstruction: String::new(),
+            own_points: None,
             nearest: None,
             iterations: 0,
             restarts: 0,
@@ -117,12 +121,13 @@ impl SolveReport {
             return message!["not solved: ", status.advice()];
         }
         let ended = match status {
+            Status::RotationGivenUp | Status::PositionGivenUp => return self.given_up(),
             Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
             Status::InCollision => {
-                return message![format!("reached to {error}, but {obstruction}: "), status.advice()];
+                return message![format!("reached to {error}, but {obstruction}: "), self.clear_advice()];
             }
             Status::Improved => return format!("below the requested value, {error} away").into(),
-            Status::OutOfReach => "as near as possible,",
+            Status::OutOfReach => "out of reach, the nearest found is",
             Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
             Status::OutsideLimits => "reached only outside the limits; inside them",
@@ -133,6 +138,33 @@ impl SolveReport {
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
         message![format!("{ended} {error} away{why}: "), status.advice()]
+    }
+
+    /// Sentence on a pose of which one part was met and the other given up.
+    fn given_up(&self) -> Message {
+        let Self { error, obstruction, status, .. } = self;
+        let (position, rotation) = (number(error.position), number(error.rotation));
+        let parts = match status {
+            Status::PositionGivenUp => {
+                format!("rotation met to {rotation} rad, position given up: the nearest found is {position} m away")
+            }
+            _ => format!("position met to {position} m, rotation given up: the nearest found is {rotation} rad away"),
+        };
+        let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
+        message![format!("{parts}{why}{}: ", self.kept_clear()), status.advice()]
+    }
+
+    /// Advice for a solution in collision.
+    fn clear_advice(&self) -> Message {
+        let nearest = self.nearest.as_ref().and_then(|nearest| nearest.clearance.nearest.as_ref());
+        match (self.own_points, nearest.and_then(|nearest| nearest.contact.measured())) {
+            (Some(measured), _) => measured.advice(),
+            (None, Some(measured)) => message![
+                measured.advice(),
+                "; if there are none, choose another target, clear what is in the way, or lower the margin"
+            ],
+            (None, None) => self.status.advice(),
+        }
     }
 
     /// Clearance as the end of a sentence; empty if nothing was checked.

@@ -14,6 +14,8 @@ pub enum Setting {
     Method(&'static str),
     /// Planner that has a solver of its own.
     MethodWithSolver,
+    /// Part of a pose that comes first: "position" or "orientation".
+    First(&'static str),
     /// Tip of a robot that has several.
     Tip,
     /// Common task of all tips.
@@ -34,6 +36,14 @@ pub enum Setting {
     StartVelocity,
     /// Configuration at the start.
     StartConfiguration,
+    /// Values of other joints passed over.
+    IgnoreExtra,
+    /// Distance beyond a limit in which a start is taken.
+    StartSlack,
+    /// Whole turns taken off, which brings a joint inside its limits.
+    Wrap,
+    /// Joint moved to its limit, which changes the pose.
+    Clip,
     /// New timing of a plan.
     Retime,
     /// Distance to keep.
@@ -59,6 +69,14 @@ pub enum Setting {
     MoreCapsules,
     /// Capsules of one radius along the links.
     CapsulesAlongLinks,
+    /// Robot that carries what is attached to it in a scene.
+    Attach,
+    /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
+    WithoutRobot(&'static str),
+    /// Angles that are converted from degrees before a call.
+    RadiansFromDegrees,
+    /// Angles that a call takes in degrees.
+    AnglesInDegrees,
 }
 
 impl fmt::Display for Setting {
@@ -69,6 +87,7 @@ impl fmt::Display for Setting {
                 return write!(f, "{article} {kind} limit");
             }
             Self::Method(name) => return write!(f, "the method '{name}'"),
+            Self::First(part) => return write!(f, "a task with the {part} first"),
             Self::Prefer(which) => return write!(f, "the preference '{which}'"),
             Self::Budget => "budget",
             Self::MethodWithSolver => "the method 'tpbso'",
@@ -81,6 +100,10 @@ impl fmt::Display for Setting {
             Self::FreeStart => "free_start",
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",
+            Self::IgnoreExtra => "ignoring extra names",
+            Self::StartSlack => "start slack",
+            Self::Wrap => "whole turns taken off bring it inside",
+            Self::Clip => "moving it to the limit changes the pose",
             Self::Retime => "a new timing of the plan",
             Self::Margin => "a margin",
             Self::Surroundings => "obstacles (perhaps none) or self-collision",
@@ -93,6 +116,9 @@ impl fmt::Display for Setting {
             Self::CapsulesAlone => "giving it the capsules that it has",
             Self::MoreCapsules => "giving it more of them",
             Self::CapsulesAlongLinks => "with_capsules_along_links",
+            Self::Attach => "a robot that carries it",
+            Self::WithoutRobot(_) => "without_robot",
+            Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }
 }

@@ -6,7 +6,8 @@ use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Robot;
 use crate::wording::listed;
 
-/// Pairs of an obstacle and a body that are not compared, such as a floor and the base that stands on it.
+/// Pairs of an obstacle and a body that are not compared, such as a floor and the base that stands on it, or an empty cloud and
+/// any body.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AllowedContacts {
     /// Obstacle and body, sorted.
@@ -22,6 +23,9 @@ impl AllowedContacts {
     pub fn new(robot: &Robot, bodies: &[CarriedBody], obstacles: &Obstacles) -> Result<Self> {
         let mut pairs = vec![];
         for (obstacle, entry) in obstacles.iter().enumerate() {
+            // Nothing touches a cloud without points.
+            let empty = if entry.shape.is_empty() { 0..bodies.len() } else { 0..0 };
+            pairs.extend(empty.map(|body| [obstacle, body]));
             let first = pairs.len();
             for link in entry.touch() {
                 let before = pairs.len();
@@ -36,6 +40,7 @@ impl AllowedContacts {
             }
         }
         pairs.sort_unstable();
+        pairs.dedup();
         Ok(Self { pairs })
     }
 

@@ -13,7 +13,7 @@ use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
-use crate::limits::Limits;
+use crate::limits::{JointOutside, Limits};
 use crate::math::vector::write_within;
 use crate::message::Message;
 use crate::objective::{Bounds, Point, Score};
@@ -93,6 +93,11 @@ impl Session {
         self.arm.lock.as_ref()
     }
 
+    /// Joints that began outside their position limits; empty once all are inside.
+    pub fn start_outside(&self) -> &[JointOutside] {
+        self.arm.outside.as_ref().map_or(&[], |outside| &outside.joints)
+    }
+
     /// Time step (s).
     pub fn dt(&self) -> f64 {
         self.arm.dt
@@ -127,8 +132,14 @@ impl Session {
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        let clearance = self.space().map_or(f64::NAN, |space| space.clearance(&self.arm.q).distance);
-        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance }
+        let clearance = self.space().map(|space| space.clearance(&self.arm.q));
+        let nearest = clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        Accepted {
+            q: &self.arm.q,
+            tick_box: &self.arm.tick_box,
+            measured: nearest.and_then(|nearest| nearest.contact.measured()),
+            clearance: clearance.map_or(f64::NAN, |clearance| clearance.distance),
+        }
     }
 
     /// The tracked robot.
@@ -187,9 +198,13 @@ impl Session {
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let mut found = if self.stopping || self.arm.targets.last().is_empty() {
+            self.arm.allow_braking();
             self.brake()
         } else {
-            self.run_rule(sampled_ago, monitor)
+            // The rule leads a joint that is outside its limits inside; the filter may hold it where it is.
+            let found = self.run_rule(sampled_ago, monitor);
+            self.arm.allow_braking();
+            found
         };
         let held = !found.interrupted && !self.stopping && self.filter(&mut found);
         self.keep_in_region(&mut found);
@@ -267,6 +282,7 @@ impl Session {
             _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             _ if held || self.goal_is_held() => Status::HeldByObstacle,
+            _ if let Some(status) = self.arm.given_up(&found.assessment.error) => status,
             Some(last) if value >= last => Status::Capped,
             _ => Status::Improved,
         }

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::JointOutside;
 use crate::message::{Message, message};
+use crate::obstacle::{Contact, Measured};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -11,7 +13,8 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// holds the arm back, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
+    /// is met, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -30,16 +33,29 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> Message {
-        self.message_with(self.status.advice())
+        self.message_with(self.status.advice(), &[])
     }
 
-    /// Returns [`message`](Self::message) with this `advice`, where one is given.
-    pub fn message_with(&self, advice: impl Into<Message>) -> Message {
+    /// Returns the advice where the nearest contact is known. An arm that is in collision with what a sensor measured is
+    /// probably in it itself.
+    pub fn advice_near(&self, nearest: &Contact) -> Message {
+        let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
+        measured.map_or_else(|| self.status.advice(), Measured::advice)
+    }
+
+    /// Returns [`message`](Self::message) with this `advice`, of an arm that began with the joints `outside` their limits.
+    pub fn message_with(&self, advice: impl Into<Message>, outside: &[JointOutside]) -> Message {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
+        let limits = match (outside, self.inside_limits) {
+            ([], true) => String::new(),
+            ([], false) => "; a joint is outside its limits and returns".into(),
+            _ => JointOutside::in_words(outside, "began"),
+        };
         let how = match self.status {
             Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
+            Status::RotationGivenUp => "position met and rotation given up",
+            Status::PositionGivenUp => "rotation met and position given up",
             Status::HeldInRegion => "as near as its region allows",
             Status::InCollision => "nearer than the margin to an obstacle or another link",
             Status::HeldByObstacle => "held back by an obstacle or another link",

@@ -66,6 +66,7 @@ pub fn track_tips(
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
     let limits = session.limits().clone();
     let mut record = Record::new(start.len(), first.len(), limits, options.limit_at, criterion, first.dt());
+    record.start_outside = session.start_outside().to_vec();
     let beginning = session.begin(asked.arrival(0))?;
     asked.push(&session, &beginning, &mut record);
     if options.ease {
@@ -76,7 +77,7 @@ pub fn track_tips(
     }
     let finished = follow(asked, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
-    if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
+    if finished && matches!(record.status, Status::Lost | Status::Capped | Status::Improved) {
         record.out_of_reach = farthest_out_of_reach(asked, record.joined().unwrap_or(0), &mut session)?;
     }
     Ok(record)

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ikcore::load::{CollisionShapes, Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
+use ikcore::units;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyString};
 
@@ -13,6 +14,7 @@ use crate::convert::{optional_text, path_or_text, rigid, summary, text, vector};
 use crate::error::{invalid, raise};
 use crate::monitor::on_a_thread;
 use crate::python_calls;
+use crate::units::doubt;
 
 #[pymethods]
 impl PyRobot {
@@ -83,7 +85,9 @@ impl PyRobot {
             package_dirs,
             directory,
         };
-        on_a_thread(py, move || Robot::from_urdf_with(&source, &options)).map(Self::from)
+        let (robot, doubts) = on_a_thread(py, move || Robot::read_urdf(&source, &options))?;
+        doubt(doubts)?;
+        Ok(robot.into())
     }
 
     /// Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
@@ -121,6 +125,11 @@ impl PyRobot {
         read_collision(collision)?;
         let tip = tip.map_or(Ok(vec![]), read_tips)?;
         python_calls::robot(model.py(), "mjcf", (model, base, tip, hold, collision, trusted))
+    }
+
+    /// Doubts limits that a MuJoCo model gives in degrees by default.
+    fn _doubt_degrees(&self) -> PyResult<()> {
+        doubt(units::of_converted_limits(&self.core))
     }
 
     /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
@@ -205,7 +214,11 @@ impl PyRobot {
         if let Some(tool) = tool {
             table.tool = rigid("tool", tool)?;
         }
-        Robot::from_dh(name.unwrap_or("dh"), &table).map(Self::from).map_err(raise)
+        let robot = Robot::from_dh(name.unwrap_or("dh"), &table).map_err(raise)?;
+        let angles = [("alpha", &table.alpha), ("theta", &table.theta)];
+        doubt(angles.into_iter().filter_map(|(what, angles)| units::of_dh_angles(what, angles)))?;
+        doubt(units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)))?;
+        Ok(robot.into())
     }
 
     /// Makes a planar arm of revolute joints in the x-y plane, with its base at the origin.
@@ -222,6 +235,7 @@ impl PyRobot {
         velocity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let robot = Self::from(Robot::planar(&vector("lengths", lengths)?).map_err(raise)?);
+        doubt(units::of_sizes(&robot.core))?;
         robot.with_limits(lower, upper, velocity)
     }
 

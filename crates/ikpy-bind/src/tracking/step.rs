@@ -3,6 +3,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::limits::JointOutside;
+use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -37,12 +39,16 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// Joints that began outside their limits, if any still was.
+    outside: Vec<JointOutside>,
     /// Errors by tip.
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Names the joints that limits of zero lock.
     lock: Option<Arc<Message>>,
+    /// Sentence about a target whose rotation had drifted.
+    drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
     around: OnceLock<Option<Clearance>>,
 }
@@ -111,27 +117,29 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.outside);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock))
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None, lock=None))]
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None))]
     fn _restore(
         py: Python<'_>,
         bytes: &[u8],
         limits: Py<PyLimits>,
         tips: Option<&[u8]>,
         lock: Option<String>,
+        drift: Option<String>,
     ) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
+        let (core, q, qd, elapsed, around, outside): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
             from_bytes("step", bytes).map_err(raise)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
+        let tips = TipErrors::restored(tips)?;
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside);
         let lock = lock.map(|lock| Arc::new(lock.into()));
-        Ok(Self { around: OnceLock::from(around), lock, ..step })
+        Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
 }
 
@@ -145,16 +153,28 @@ impl PyStep {
             qd,
             limits,
             elapsed,
+            outside: vec![],
             tips: TipErrors::unnamed(),
             among: None,
             lock: None,
+            drift: None,
             around: OnceLock::new(),
         }
+    }
+
+    /// Adds the joints that began outside their limits.
+    pub fn led_from(self, outside: Vec<JointOutside>) -> Self {
+        Self { outside, ..self }
     }
 
     /// Adds the errors by tip.
     pub fn of_tips(self, tips: TipErrors) -> Self {
         Self { tips, ..self }
+    }
+
+    /// Adds the drift of the target's rotation to the message.
+    pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
+        Self { drift: drift.map(|drift| drift.to_string()), ..self }
     }
 
     /// Adds the clear space of an arm, and its configuration `q`.
@@ -173,11 +193,17 @@ impl PyStep {
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = match &self.lock {
-            Some(lock) if self.core.status == Status::Capped => self.core.message_with(&**lock),
-            _ => self.core.message(),
-        };
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        let advice = match (&self.lock, nearest) {
+            (Some(lock), _) if self.core.status == Status::Capped => Message::clone(lock),
+            (_, Some(nearest)) => self.core.advice_near(&nearest.contact),
+            _ => self.core.status.advice(),
+        };
+        let message = self.core.message_with(advice, &self.outside);
+        let message = match &self.drift {
+            Some(drift) => format!("{}; {drift}", said(&message)).into(),
+            None => message,
+        };
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;

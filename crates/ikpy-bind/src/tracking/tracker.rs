@@ -1,12 +1,16 @@
 //! `Tracker`.
 
+use std::cell::Cell;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use ikcore::obstacle::Surroundings;
+use ikcore::robot::Robot;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
 use ikcore::task::TargetRow;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
+use ikcore::units::UnitDoubt;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -14,16 +18,19 @@ use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
 use super::session::in_progress;
 use super::step::PyStep;
-use crate::convert::{point, vector};
+use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
-use crate::ik::read_target;
+use crate::ik::read_target_by;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
 use crate::robot::PyRobot;
+use crate::start_gate::{Outside, plain};
 use crate::tip_keys::TipKeys;
 use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
+use crate::units;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -49,6 +56,9 @@ use crate::traversal::traversed;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
+///     start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
+///         there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
+///         Rounding is taken off in any case.
 ///
 /// For example:
 ///
@@ -64,6 +74,10 @@ pub struct PyTracker {
     settings: TipSettings,
     /// Keys of the last targets.
     keys: Mutex<TipKeys>,
+    /// Whether a step has said that the rotation of a target had drifted.
+    drifted: AtomicBool,
+    /// Whether a doubt about a unit was raised in a tick; there would be one in each.
+    doubted: AtomicBool,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
     /// The robot.
@@ -83,8 +97,9 @@ impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None)")]
+                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
+                        start_slack=None),
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -103,6 +118,7 @@ impl PyTracker {
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
         target_filter: Option<&Bound<'_, PyAny>>,
         timeout: Option<f64>,
+        start_slack: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
@@ -115,15 +131,26 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
+        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at, start_slack };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
+        units::doubt(options.surroundings.obstacles.as_ref().and_then(|all| units::of_obstacles(arm, all)))?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
         }
         let (session, keys) = (Mutex::new(session), Mutex::new(robot.get().tips.clone()));
-        Ok(Self { session, settings, keys, runs_solver, robot: robot.clone().unbind(), limits: in_force })
+        let [drifted, doubted] = [(); 2].map(|()| AtomicBool::new(false));
+        Ok(Self {
+            session,
+            settings,
+            keys,
+            drifted,
+            doubted,
+            runs_solver,
+            robot: robot.clone().unbind(),
+            limits: in_force,
+        })
     }
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
@@ -135,7 +162,9 @@ impl PyTracker {
     /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
     /// most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
     /// target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
-    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
+    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged. A rotation that
+    /// has drifted, R'R by up to 0.25 from the identity, is taken as the nearest rotation, and the message of the first such
+    /// step says so.
     ///
     /// Args:
     ///     target: target of the tip, or of several tips, at the end of the tick; None: no new target.
@@ -153,7 +182,18 @@ impl PyTracker {
         velocity: Option<&Bound<'_, PyAny>>,
         stamp: Option<f64>,
     ) -> PyResult<PyStep> {
-        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read_target)).transpose()?;
+        let drift = Cell::new(None);
+        let read = |what: &str, value: &Bound<'_, PyAny>| {
+            read_target_by(what, value, |rows| {
+                let (pose, found) = drifted_rows(what, rows)?;
+                drift.set(found.or(drift.get()));
+                Ok(pose)
+            })
+        };
+        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read)).transpose()?;
+        self.doubt_once(|robot| {
+            target.as_ref()?.iter().find_map(|(subject, target)| units::of_target(robot, "target", subject, target))
+        })?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         if target.is_none() && (velocity.is_some() || stamp.is_some()) {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
@@ -169,6 +209,7 @@ impl PyTracker {
             }
             None => None,
         };
+        let outside = session.start_outside().to_vec();
         let core = if self.runs_solver {
             watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
         } else {
@@ -180,8 +221,9 @@ impl PyTracker {
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
+        let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
-        Ok(step.among(space, q).of_tips(tips).of_locked(lock))
+        Ok(step.among(space, q).of_tips(tips).led_from(outside).of_locked(lock).of_drifted_target(drift))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
@@ -194,7 +236,7 @@ impl PyTracker {
         self.session().stop()
     }
 
-    /// Resets to q (n,) and t = 0, at rest or in motion.
+    /// Resets to q (n,) and t = 0, at rest or in motion. Like the start, q may be outside the position limits by `start_slack`.
     ///
     /// Args:
     ///     q: configuration (n,) (rad, m).
@@ -208,8 +250,15 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
+        let arm = &self.robot.get().core;
+        let (q, qd, qdd) = (joint_vector(arm, "q", q)?, read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
+    }
+
+    /// Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside.
+    #[getter]
+    fn start_outside(&self) -> Vec<Outside> {
+        plain(self.session().start_outside())
     }
 
     /// Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
@@ -225,6 +274,7 @@ impl PyTracker {
     #[setter]
     fn set_obstacles(&self, obstacles: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let given = obstacles.map(MovingObstacles::read).transpose()?;
+        self.doubt_once(|robot| units::of_obstacles(robot, &given.as_ref()?.shapes))?;
         let (shapes, velocities) = given.map_or((None, vec![]), |given| (Some(given.shapes), given.velocities));
         self.session().set_obstacles(shapes, velocities).map_err(raise)
     }
@@ -236,6 +286,16 @@ impl PyTracker {
 }
 
 impl PyTracker {
+    /// Warns of the first doubt of all ticks.
+    fn doubt_once(&self, find: impl FnOnce(&Robot) -> Option<UnitDoubt>) -> PyResult<()> {
+        if self.doubted.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let found = find(&self.robot.get().core);
+        self.doubted.store(found.is_some(), Ordering::Relaxed);
+        units::doubt(found)
+    }
+
     /// Locks the keys of the last targets.
     fn keys(&self) -> std::sync::MutexGuard<'_, TipKeys> {
         self.keys.lock().unwrap_or_else(std::sync::PoisonError::into_inner)

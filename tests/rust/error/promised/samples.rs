@@ -125,6 +125,11 @@ pub fn ball(x: f64) -> Shape {
     Shape::sphere([x, 0.0, 0.0], 0.1).unwrap()
 }
 
+/// A cloud of one point.
+pub fn seen() -> Obstacle {
+    Shape::point_cloud(vec![[3.0, 0.0, 0.0]], 0.1).unwrap().into()
+}
+
 pub fn line() -> StraightLine {
     StraightLine { distance: 0.1, direction: None, frame: LineFrame::Tip, touch: vec![] }
 }

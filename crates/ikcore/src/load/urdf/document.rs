@@ -8,6 +8,7 @@ use super::link_capsules::{self, LinkCapsules};
 use super::{visuals, xml};
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Visual;
+use crate::units::{self, UnitDoubt};
 
 /// Checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
 pub(super) struct Document {
@@ -115,6 +116,14 @@ impl Document {
     /// Returns the index of the joint with this name.
     pub(super) fn joint_number(&self, name: &str) -> Option<usize> {
         self.joint_numbers.get(name).copied()
+    }
+
+    /// Doubts the angles at which joints are placed.
+    pub(super) fn doubt(&self) -> Option<UnitDoubt> {
+        let of = |joint: &UrdfJoint| {
+            units::of_rpy_in_file(&format!("rpy of the origin of joint '{}'", shortened(&joint.name)), joint.rpy)
+        };
+        self.joints.iter().filter(|joint| joint.rpy.iter().any(|angle| angle.abs() > units::MANY_TURNS)).find_map(of)
     }
 
     /// Creates an error located at a joint.

@@ -12,6 +12,7 @@ use super::tree::Tree;
 use super::visuals;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
+use crate::units::{self, UnitDoubt};
 
 /// Options for loading a URDF.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -73,6 +74,15 @@ impl Robot {
     /// # Errors
     /// Errors of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
     pub fn from_urdf_with(path_or_xml: &str, options: &UrdfOptions) -> Result<Self> {
+        Self::read_urdf(path_or_xml, options).map(|(robot, _)| robot)
+    }
+
+    /// Reads a robot as [`from_urdf_with`](Self::from_urdf_with) does, and returns with it what looks like degrees or millimetres
+    /// in the file.
+    ///
+    /// # Errors
+    /// Errors of [`from_urdf_with`](Self::from_urdf_with).
+    pub fn read_urdf(path_or_xml: &str, options: &UrdfOptions) -> Result<(Self, Vec<UnitDoubt>)> {
         let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
         let tree = Tree::new(&document)?;
         let base = match &options.base {
@@ -93,10 +103,13 @@ impl Robot {
             [] => robot,
             hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
         };
-        match &options.srdf {
-            None => Ok(robot),
-            Some(srdf) => robot.with_srdf(srdf),
-        }
+        let robot = match &options.srdf {
+            None => robot,
+            Some(srdf) => robot.with_srdf(srdf)?,
+        };
+        let doubts = units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)).chain(document.doubt());
+        let doubts = doubts.collect();
+        Ok((robot, doubts))
     }
 }
 
@@ -110,7 +123,7 @@ pub(super) fn read(path: &str) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 
-fn read_urdf(path: &str) -> Result<String> {
+pub(super) fn read_urdf(path: &str) -> Result<String> {
     let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);

@@ -6,6 +6,7 @@
 //! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
 use super::tick::{Tick, TickResult};
+use crate::ik::RankedDescent;
 use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
@@ -78,8 +79,34 @@ impl GoalPursuit {
             goal.expected(time, motion.scales(), &mut self.expected);
         }
         let anew = (aims.has_pairs() && self.has_no_way(self.away(q))).then_some(q);
-        self.solve(anew, time, &tick.context.positions(), &mut found, tick);
+        let positions = tick.context.positions();
+        self.solve(anew, time, &positions, &mut found, tick);
+        self.solve_in_order(&positions, &mut found, tick);
         found
+    }
+
+    /// Solves for a sample within the tolerances where the target itself was not met, or of a pose of which one part comes first.
+    fn solve_in_order(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let StepContext { robot, aims, .. } = tick.context;
+        let ranked = tick.ranked();
+        if ranked.is_none() && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
+            return;
+        }
+        found.evaluations += 1;
+        if aims.assess(robot, &self.sample).score.solved {
+            return;
+        }
+        let mut near = TickResult::at(&self.sample);
+        let is_within = tick.descend_into_band(&mut near, positions);
+        found.evaluations += near.evaluations;
+        if is_within {
+            self.sample = near.q;
+            return;
+        }
+        let Some((pose, first)) = ranked else { return };
+        let mut descent = RankedDescent::new(robot, &pose, first, positions);
+        self.sample = descent.descend(&self.expected).q;
+        found.evaluations += descent.evaluations;
     }
 
     /// Largest joint distance of the predicted goal from `q` (rad, m).

@@ -41,6 +41,9 @@ impl TipStep {
             found = TickResult { evaluations: found.evaluations, ..begin.clone() };
             self.gauss_newton(&mut found, None, &tick);
         }
+        if !found.is_solved() && tick.descend_into_band(&mut found, &tick_box.bounds) {
+            found.assess(robot, &aims);
+        }
         if !found.is_solved() && !self.approach(&begin, &mut found, &tick) {
             let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
             tick.descend(&mut found, &tick_box.bounds, stop);
