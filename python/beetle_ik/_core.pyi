@@ -129,10 +129,13 @@ class Robot:
                 list is refused.
 
         Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
-        `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
+        `safety_controller`. A revolute or prismatic joint of the chain needs a `<limit>`; one without lower and upper is
+        unlimited, and continuous if it turns. Velocity limits may be missing; zero locks the joint. Acceleration,
+        deceleration (the smaller of both counts) and jerk of URDF 1.2 are in `rated_limits`.
 
         Raises:
-            UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
+            UrdfError: not XML, no joint, a cycle, two roots, a zero axis, a joint without `<limit>`, or several leaves and
+                no `tip`.
             UnknownNameError: no link of that name; the message lists them.
         """
     @staticmethod
@@ -155,15 +158,17 @@ class Robot:
             trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
                 anyone.
 
-        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples
-        linearly follow their master. Geoms that collide become bodies, except ellipsoids, planes and height fields,
-        which are listed in `unread_collision_shapes`.
+        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints, linear ones are
+        followed: couplings of joints or fixed tendons, locks, and whatever follows from these, such as a parallelogram.
+        Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
+        `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
+        ellipsoids, planes and height fields, which are listed in `unread_collision_shapes`.
 
         Raises:
             BeetleIkError: MuJoCo is not installed.
             UnknownNameError: no body or site of that name; the message lists them.
-            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or a joint coupled in
-                another way.
+            InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or an equality (connect,
+                weld, tendon, polynomial coupling) that joints of the chain do not keep.
         """
     @staticmethod
     def from_description(
@@ -333,8 +338,8 @@ class Robot:
     @property
     def rated_limits(self) -> Limits:
         """The maker's rated limits: `limits`, plus acceleration and jerk limits where the maker publishes them (`panda`
-        and `fr3`, from the maker's "Robot and interface specifications"). Pass them as `limits=`: no call uses them by
-        default.
+        and `fr3`, from the maker's "Robot and interface specifications") or a URDF 1.2 has them. Pass them as `limits=`:
+        no call uses them by default.
         """
 
     @property
@@ -1574,7 +1579,8 @@ def solve(
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
         margin: least distance from obstacles and between links (m); None: 1 mm.
-        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+            several tips all of whose collision shapes are known.
         stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
         seed: seed of the random draws; the same seed gives the same bits.
 
@@ -1636,11 +1642,11 @@ class Solution:
     @property
     def clearance(self) -> float:
         """Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
-        deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+        deepest overlap. NaN where nothing is checked; inf if nothing can touch.
         """
     @property
     def nearest(self) -> Nearest | None:
-        """The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch."""
+        """The nearest two bodies, a `Nearest`; None where nothing is checked, or if nothing can touch."""
     @property
     def iterations(self) -> int:
         """Iterations over all starts."""
@@ -1697,7 +1703,8 @@ def solve_all(
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
         margin: least distance from obstacles and between links (m); None: 1 mm.
-        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+            several tips all of whose collision shapes are known.
         stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
         seed: seed of the random draws; the same seed gives the same bits.
 
@@ -2551,7 +2558,8 @@ def track(
         task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
         solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
             two evaluations per step.
-        limits: limits on the joint motion; None: the robot's.
+        limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+            `Limits(velocity=np.inf)` says that jumps are meant.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
         position_tolerance: error band of positions (m); for several tips also a dict.
@@ -2560,7 +2568,8 @@ def track(
             robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
             or stops. None: nothing is checked.
         margin: least distance from obstacles and between links (m); None: 1 mm.
-        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+            several tips all of whose collision shapes are known.
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
             at its "start".
@@ -2574,7 +2583,7 @@ def track(
         A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+        InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
         LimitError: a start outside its limits, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
             region; position, acceleration or jerk limits that vary in time, among obstacles.
@@ -2623,7 +2632,7 @@ class TrackResult:
         """Velocities (k, n) (rad/s, m/s): (q_i - q_{i-1}) / dt, zero in row 0."""
     @property
     def clearance(self) -> _Array:
-        """Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`."""
+        """Smallest distances from obstacles and between links (k,) (m); NaN where nothing is checked."""
     @property
     def velocity_limit(self) -> _Array:
         """Velocity limits in force in each tick (k, n); NaN in row 0, inf for none."""
@@ -2743,7 +2752,8 @@ class Tracker:
         dt: time step (s).
         task: as in `track`; it may also name tips that get their targets later.
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
-        limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+        limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+            `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
             sample them.
         goals: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
@@ -2901,11 +2911,11 @@ class Step:
     @property
     def clearance(self) -> float:
         """Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
-        NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+        NaN where nothing is checked; inf if nothing can touch.
         """
     @property
     def nearest(self) -> Nearest | None:
-        """The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch."""
+        """The nearest two bodies at `q`, a `Nearest`; None where nothing is checked, or if nothing can touch."""
 
 # --- obstacles ----------------------------------------------------------------------------------
 

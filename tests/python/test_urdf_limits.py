@@ -69,7 +69,7 @@ def test_a_negative_rate_is_refused_with_its_line() -> None:
 
 def test_a_joint_without_limit_is_refused_with_its_line() -> None:
     remedies = {
-        "revolute": 'give lower and upper, or write type="continuous"',
+        "revolute": 'give lower and upper, or write <joint type="continuous">',
         "prismatic": "give lower and upper, perhaps -inf and inf",
     }
     for kind, remedy in remedies.items():

@@ -2,8 +2,7 @@
 
 use thiserror::Error;
 
-use crate::message::{Message, Setting, message};
-use crate::wording::named_joints;
+use crate::message::{Message, Setting};
 
 /// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -405,16 +404,6 @@ impl Error {
     pub(crate) fn unknown_option(what: &str, value: &str, known: &[&str]) -> Self {
         let known = known.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
-    }
-
-    /// Creates an [`Error::NoPace`]; `note` ends the remedy.
-    pub(crate) fn no_pace(joints: &[&str], note: &str) -> Self {
-        let lack = match joints {
-            [_] => "has neither a velocity nor an acceleration limit, so that nothing sets its pace",
-            _ => "have neither a velocity nor an acceleration limit, so that nothing sets their pace",
-        };
-        let remedy = message!["give ", Setting::Limit("velocity"), note];
-        Self::NoPace { problem: format!("{} {lack}", named_joints(joints)), remedy }
     }
 
     /// Returns the error with these words in place of the plain ones of each setting in its messages.

@@ -358,8 +358,8 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&arm, &here, &there, PointToPointOptions::default()),
-        "joint 'joint_1' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give \
-         a velocity limit"
+        "joints 'joint_1', 'joint_2' have neither a velocity nor an acceleration limit, so that nothing sets their pace: \
+         give a velocity limit"
     );
     assert_eq!(
         Shape::sphere([0.0; 3], 0.0).unwrap_err().to_string(),

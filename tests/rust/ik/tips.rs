@@ -42,8 +42,14 @@ const LEFT: Subject = Subject::Tip(0);
 const RIGHT: Subject = Subject::Tip(1);
 const TRAY: Subject = Subject::Pair { from: 0, of: 1 };
 
+/// Options for targets from random configurations, at which links may be inside each other.
 fn options(subjects: &[Subject]) -> SolveOptions {
-    SolveOptions { tips: subjects.iter().map(|subject| task(*subject)).collect(), ..SolveOptions::default() }
+    let surroundings = Surroundings { self_collision: Some(false), ..Surroundings::default() };
+    SolveOptions {
+        tips: subjects.iter().map(|subject| task(*subject)).collect(),
+        surroundings,
+        ..SolveOptions::default()
+    }
 }
 
 fn both(q: &[f64]) -> [Target; 2] {

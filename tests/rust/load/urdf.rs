@@ -195,8 +195,17 @@ fn missing_limits_are_told_from_zeros() {
         (arm.joints()[0].lower, arm.joints()[0].upper, arm.joints()[0].velocity)
     };
     let free = (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
-    assert_eq!(limits(""), free);
     assert_eq!(limits("<limit effort='10'/>"), free);
+    assert_eq!(
+        error_after("<limit lower=\"-1\" upper=\"2\" velocity=\"1.5\"/>", ""),
+        "URDF line 5: joint 'a' is revolute and has no <limit>, which URDF requires: give lower and upper, or write \
+         <joint type=\"continuous\">"
+    );
+    assert_eq!(
+        error_after("<limit lower=\"0\" upper=\"0.5\" velocity=\"0.2\"/>", ""),
+        "URDF line 11: joint 'b' is prismatic and has no <limit>, which URDF requires: give lower and upper, perhaps -inf and \
+         inf"
+    );
     assert_eq!(limits("<limit upper='0.5' velocity='1'/>"), (0.0, 0.5, 1.0));
     assert_eq!(limits("<limit lower='0' upper='0' velocity='0'/>"), (0.0, 0.0, 0.0));
     assert_eq!(limits("<limit lower='-inf' upper='1' velocity='inf'/>"), (f64::NEG_INFINITY, 1.0, f64::INFINITY));

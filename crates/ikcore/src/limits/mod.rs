@@ -20,6 +20,7 @@ mod tick_box;
 pub use field::Field;
 pub use joint_limits::Limits;
 pub(crate) use joint_limits::ROUNDING;
+pub(crate) use pace::no_pace;
 pub use profile::{Profile, Sinusoid};
 pub use start_gate::{AdmittedStart, JointOutside, StartSlack};
 pub use tick_box::LimitAt;

@@ -26,7 +26,7 @@ impl Limits {
     pub(crate) fn require_pace(&self) -> Result<()> {
         match &self.unpaced()[..] {
             [] => Ok(()),
-            joints => Err(Error::no_pace(joints, "")),
+            joints => Err(no_pace(joints, "")),
         }
     }
 
@@ -37,7 +37,7 @@ impl Limits {
     pub(crate) fn require_pace_or_consent(&self) -> Result<()> {
         match &self.unpaced()[..] {
             joints if !self.own_velocity || joints.is_empty() => Ok(()),
-            joints => Err(Error::no_pace(joints, ", infinite where a joint may jump to any position in one tick")),
+            joints => Err(no_pace(joints, ", infinite where a joint may jump to any position in one tick")),
         }
     }
 
@@ -82,6 +82,16 @@ impl Limits {
     fn of_joint(&self, field: Field, j: usize, value: f64) -> bool {
         self.field(field).map_or(value == f64::INFINITY, |profiles| profiles[j] == Profile::Constant(value))
     }
+}
+
+/// Creates an [`Error::NoPace`]; `note` ends the remedy.
+pub(crate) fn no_pace(joints: &[&str], note: &str) -> Error {
+    let lack = match joints {
+        [_] => "has neither a velocity nor an acceleration limit, so that nothing sets its pace",
+        _ => "have neither a velocity nor an acceleration limit, so that nothing sets their pace",
+    };
+    let remedy = message!["give ", Setting::Limit("velocity"), note];
+    Error::NoPace { problem: format!("{} {lack}", named_joints(joints)), remedy }
 }
 
 #[cfg(test)]

@@ -190,7 +190,7 @@ mod tests {
         let mut joint = |name: &str, [parent, child]: [&str; 2], [xyz, axis]: [&str; 2], kind: &str| {
             urdf += &format!(
                 r#"<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0.1 0.2 0.3"/>
-                <axis xyz="{axis}"/></joint>"#
+                <axis xyz="{axis}"/><limit velocity="1"/></joint>"#
             );
         };
         joint("yaw", ["floor", "chest"], ["0 0 1", "0 0 1"], "continuous");

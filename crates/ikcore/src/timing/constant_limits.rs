@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack};
+use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
@@ -239,7 +239,7 @@ impl ConstantLimits {
     pub(crate) fn require_pace(&self) -> Result<()> {
         let free = |j: &usize| self.rates().iter().all(|(_, limits)| limits[*j].is_infinite());
         let joints: Vec<&str> = (0..self.dof()).filter(free).map(|j| self.joint_name(j)).collect();
-        if joints.is_empty() { Ok(()) } else { Err(Error::no_pace(&joints, "")) }
+        if joints.is_empty() { Ok(()) } else { Err(no_pace(&joints, "")) }
     }
 
     /// The limits of `robot`, or those `given`, with position limits widened to the start `q` (n,).

@@ -2,7 +2,7 @@
 
 use super::constant_limits::ConstantLimits;
 use crate::error::{Error, Result};
-use crate::limits::ROUNDING;
+use crate::limits::{ROUNDING, no_pace};
 use crate::message::{Setting, message};
 use crate::trajectory::Trajectory;
 use crate::wording::{number, time};
@@ -45,7 +45,7 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Tra
     }
     let factor = limits.slowdown(motion);
     if factor == 0.0 {
-        return Err(Error::no_pace(&[limits.joint_name(0)], ""));
+        return Err(no_pace(&[limits.joint_name(0)], ""));
     }
     within_limits(motion.slowed(factor * CAUTION)?, limits)
 }

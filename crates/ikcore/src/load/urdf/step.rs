@@ -55,7 +55,7 @@ pub(super) fn require_limit(document: &Document, index: usize) -> Result<()> {
     let joint = &document.joints[index];
     let (kind, remedy) = match joint.kind {
         _ if joint.has_limit => return Ok(()),
-        UrdfKind::Revolute => ("revolute", "give lower and upper, or write type=\"continuous\""),
+        UrdfKind::Revolute => ("revolute", "give lower and upper, or write <joint type=\"continuous\">"),
         UrdfKind::Prismatic => ("prismatic", "give lower and upper, perhaps -inf and inf"),
         _ => return Ok(()),
     };
