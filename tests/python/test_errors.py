@@ -167,7 +167,8 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: {TURNED}; {RADIANS}",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: "
+            f"{TURNED}; {RADIANS}",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
