@@ -463,8 +463,8 @@ class Robot:
         For example:
 
             >>> panda = bik.Robot.named("panda")
-            >>> panda.wrap(np.radians([350, 10, 0, 270, 0, 90, 45])).round(2).tolist()
-            [-0.17, 0.17, 0.0, -1.57, 0.0, 1.57, 0.79]
+            >>> panda.wrap([6.0, 0.2, 0.0, 4.7, 0.0, 1.6, 0.8]).round(2).tolist()
+            [-0.28, 0.2, 0.0, -1.58, 0.0, 1.6, 0.8]
         """
     def q_from(
         self, names: Any, values: ArrayLike | None = None, *, degrees: bool = False, ignore_extra: bool = False
@@ -1579,7 +1579,8 @@ def solve(
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
             "right_tool") gives the pose of the second tip in the frame of the first.
         task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
-        start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit. For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+        start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
+            For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
             search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
             solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
             target.
