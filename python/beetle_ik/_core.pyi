@@ -451,7 +451,53 @@ class Robot:
             UnknownNameError: no link of that name; the message lists them.
         """
     def clip(self, q: ArrayLike) -> _Array:
-        """Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n)."""
+        """Moves each joint of q to its nearest position limit if it is outside: (n,) for q (n,), (m, n) for q (m, n). This changes the
+        pose of the tip; `wrap` takes off whole turns, which does not.
+        """
+    def wrap(self, q: ArrayLike, *, near: ArrayLike | None = None) -> _Array:
+        """Returns the same posture with whole turns added to or taken off its joints, so that q is inside the position limits: (n,) for
+        q (n,), (m, n) for q (m, n). Poses of all links stay the same.
+
+        Controllers that report angles from 0 to 360 degrees, or count turns, become usable this way. A joint inside its limits
+        stays where it is, one outside takes the fewest turns, and a joint without limits comes to (-pi, pi]; with `near`, each
+        takes the turn nearest to it. Rounding beyond a limit is taken off. Joints that slide stay as they are.
+
+        Args:
+            q: joint positions (n,) or (m, n) (rad, m).
+            near: configuration (n,) to which the result is as near as possible; None: see above.
+
+        Raises:
+            LimitError: no whole turn brings a joint inside its limits, or a joint that slides is outside (an
+                `InvalidInputError`).
+
+        For example:
+
+            >>> panda = bik.Robot.named("panda")
+            >>> panda.wrap([6.0, 0.2, 0.0, 4.7, 0.0, 1.6, 0.8]).round(2).tolist()
+            [-0.28, 0.2, 0.0, -1.58, 0.0, 1.6, 0.8]
+        """
+    def q_from(
+        self, names: Any, values: ArrayLike | None = None, *, degrees: bool = False, ignore_extra: bool = False
+    ) -> _Array:
+        """Returns joint positions by name in the order of q, (n,) or (m, n), from a message, a dict or a table.
+
+        Args:
+            names: names of the joints, in any order. Alone: values with names, such as a dict, a `sensor_msgs/JointState`, a
+                row or table of pandas, or a structured array; of columns named "q:joint", these alone are taken.
+            values: (k,) or (m, k), one column per name (rad, m).
+            degrees: whether joints that turn are in degrees.
+            ignore_extra: whether to pass over names of other joints, such as those of a gripper.
+
+        Raises:
+            UnknownNameError: a name that is no joint of q; the message lists these.
+            InvalidInputError: a joint that is missing or there twice, wrong shape, or NaN.
+
+        For example:
+
+            >>> arm = bik.Robot.planar([1.0, 1.0])
+            >>> arm.q_from(["joint_2", "joint_1"], [90.0, 0.0], degrees=True).round(2).tolist()
+            [0.0, 1.57]
+        """
     def link_poses(self, q: ArrayLike) -> _Array:
         """Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4)."""
     def all_link_poses(self, q: ArrayLike) -> _Array:
@@ -1558,7 +1604,8 @@ def solve(
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
             "right_tool") gives the pose of the second tip in the frame of the first.
         task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
-        start: configuration (n,). For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+        start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
+            For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
             search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
             solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
             target.
@@ -1591,7 +1638,7 @@ def solve(
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
-        LimitError: a start outside the limits.
+        LimitError: limits that contradict each other.
 
     For example:
 
@@ -1688,7 +1735,7 @@ def solve_all(
     Args:
         robot: the arm.
         target: pose (4, 4), or position (3,) (m).
-        start: (n,); solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
+        start: (n,), a hint as in `solve`; solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
         limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
         separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
             a closed form are returned, those of a search differ by 0.1.
@@ -1714,7 +1761,7 @@ def solve_all(
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
             configurations.
-        LimitError: a start outside the limits.
+        LimitError: limits that contradict each other.
 
     For example:
 
@@ -2168,7 +2215,7 @@ def solve_batch(
 
     Raises:
         InvalidInputError: wrong shape; NaN, or a target that is not a rigid transform (names the row).
-        LimitError: a start outside the limits (names the row).
+        LimitError: limits that contradict each other.
 
     For example:
 
@@ -2538,6 +2585,7 @@ def track(
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
     recover: bool = True,
+    start_slack: ArrayLike | None = None,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -2573,6 +2621,8 @@ def track(
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
             at its "start".
+        start_slack: how far start may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
+            inside within its limits, see `TrackResult.start_outside`. None: 5 degrees, 5 mm for joints that slide.
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
         recover: whether an arm that comes no nearer to the path, at a joint limit or in a singular configuration, goes to a
@@ -2583,8 +2633,8 @@ def track(
         A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
-        LimitError: a start outside its limits, or a negative limit.
+        InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+        LimitError: a start farther outside its limits than start_slack, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
             region; position, acceleration or jerk limits that vary in time, among obstacles.
 
@@ -2684,6 +2734,9 @@ class TrackResult:
     def references(self) -> dict[_TipKey, _Array]:
         """Reference positions of each target, in the form of `positions`."""
     @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that began outside their position limits and were led inside, each (joint, value, limit) (rad, m)."""
+    @property
     def limit_margin(self) -> float:
         """Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits."""
     @property
@@ -2764,6 +2817,9 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+        start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
+            there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
+            Rounding is taken off in any case.
         recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
             configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
             a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
@@ -2796,6 +2852,7 @@ class Tracker:
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
         timeout: float | None = None,
+        start_slack: ArrayLike | None = None,
         recover: bool = True,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
@@ -2828,6 +2885,9 @@ class Tracker:
             Duration of the stop (s), to within a tick; 0 without acceleration and jerk limits.
         """
     @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside."""
+    @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
         """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
         new obstacles are in the way, the arm carries on with the stop certified before.
@@ -2838,7 +2898,7 @@ class Tracker:
         new obstacles are in the way, the arm carries on with the stop certified before.
         """
     def reset(self, q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> None:
-        """Resets to q (n,) and t = 0, at rest or in motion.
+        """Resets to q (n,) and t = 0, at rest or in motion. Like the start, q may be outside the position limits by `start_slack`.
 
         Args:
             q: configuration (n,) (rad, m).
@@ -3285,6 +3345,8 @@ def plan_point_to_point(
     start_q: ArrayLike | None = None,
     end_q: ArrayLike | None = None,
     start_qd: ArrayLike | None = None,
+    start_slack: ArrayLike | None = None,
+    end_turns: Literal["nearest", "as_given"] = "nearest",
     approach: float | StraightLine | None = None,
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
@@ -3309,6 +3371,10 @@ def plan_point_to_point(
         start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
         start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
             rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+        start_slack: how far start_q may be outside its position limits (rad, m), a number or (n,); the motion then begins there and
+            goes inside. None: 5 degrees, 5 mm for joints that slide. Rounding is taken off in any case.
+        end_turns: "nearest": joints that turn without limits go the short way round, and may end whole turns away from end_q (see
+            `Plan.end_turned`); among obstacles they go the other way where that is free. "as_given": they end at end_q.
         approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`.
             The line has constant orientation, begins and ends at rest, and is followed within 0.1 mm.
         retreat: straight line of the tip after the start, against the z axis, otherwise like `approach`.
@@ -3332,7 +3398,8 @@ def plan_point_to_point(
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
             only if none can be reached.
-        LimitError: limits that contradict each other or exclude an end.
+        LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
+            joint and the remedy).
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
         UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 
@@ -3356,6 +3423,9 @@ def state_to_state(
     qd1: ArrayLike | None = None,
     qdd1: ArrayLike | None = None,
     joint_names: list[str] | None = None,
+    robot: Robot | None = None,
+    start_slack: ArrayLike | None = None,
+    end_turns: Literal["nearest", "as_given"] = "nearest",
 ) -> Trajectory:
     """Computes the fastest joint motion from one state to another; all joints arrive together.
 
@@ -3370,7 +3440,12 @@ def state_to_state(
         limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
         qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
         qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
-        joint_names: n names; None: "q1", "q2" and so on.
+        joint_names: n names; None: "q1", "q2" and so on, or those of the robot.
+        robot: the arm whose joints these are: position and velocity limits left out are then its own, and joints that turn without
+            limits go the short way round.
+        start_slack: how far q0 may be outside its position limits (rad, m), a number or (n,); the motion then begins there and goes
+            inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
+        end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 
     Returns:
         A `Trajectory` of cubic segments.
@@ -3378,7 +3453,7 @@ def state_to_state(
     Raises:
         TypeError: limits that are no `Limits`.
         InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
-        LimitError: a position outside its limits.
+        LimitError: q0 farther outside its limits than start_slack, or q1 outside them.
         InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
             limits.
         UnsupportedLimit: limits that vary in time.
@@ -3524,6 +3599,8 @@ def plan_batch(
     *,
     threads: int | None = None,
     progress: _Progress = None,
+    start_slack: ArrayLike | None = None,
+    end_turns: Literal["nearest", "as_given"] = "nearest",
     approach: float | StraightLine | None = None,
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
@@ -3573,6 +3650,7 @@ def plan_along_path(
     path: Path | _Pose,
     *,
     start_q: ArrayLike | None = None,
+    start_slack: ArrayLike | None = None,
     task: Task | None = None,
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] | TPBSO = "timed",
@@ -3592,6 +3670,8 @@ def plan_along_path(
         robot: the arm.
         path: a `Path`, whose timing is ignored, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
         start_q: joint positions (n,) at the start; None: chosen by the planner.
+        start_slack: as for `plan_point_to_point`; where no motion leads a joint inside at once, it goes no farther out, and is inside
+            at the end.
         task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
             `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
             whole pose.
@@ -3620,7 +3700,7 @@ def plan_along_path(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
             a robot without bodies.
-        LimitError: limits that contradict each other.
+        LimitError: limits that contradict each other; a start farther outside them than start_slack.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
 
@@ -3699,6 +3779,14 @@ class Plan:
     @property
     def nearest(self) -> Nearest | None:
         """Nearest two bodies over the whole trajectory, a `Nearest`; None without obstacles."""
+    @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m)."""
+    @property
+    def end_turned(self) -> list[tuple[str, float, float]]:
+        """Joints that went the short way round, and end whole turns away from the given end_q, each (joint, value at the end, value
+        given) (rad).
+        """
     @property
     def freed(self) -> tuple[float, float] | None:
         """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and
@@ -3791,7 +3879,8 @@ def track_model_free(
             exception or returns anything else, the run ends with the record so far; on the first measurement, the
             exception propagates.
         path: reference positions, or poses, over time.
-        start: (n,), configuration at t = 0 (rad, m).
+        start: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
+            inside.
         dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
         controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
         limits: lower, upper and velocity limits, kept by all commands, including probes: each is reachable from the
@@ -3806,7 +3895,7 @@ def track_model_free(
 
     Raises:
         InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
-        LimitError: a start outside the limits, or a negative limit.
+        LimitError: a start more than 5 degrees outside the limits, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
 
     For example:
@@ -4070,7 +4159,7 @@ class Trajectory:
         joint_names: list[str] | None = None,
     ) -> Trajectory:
         """Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
-        are given, quintic if accelerations qdd (k, n) are given too.
+        are given, quintic if accelerations qdd (k, n) are given too. A table of pandas gives its columns as `joint_names`.
         """
     @property
     def time(self) -> _Array:

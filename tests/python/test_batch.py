@@ -34,7 +34,7 @@ WRONG = np.array(TARGETS[:4])
 WRONG[1, 0, 3] = np.nan
 WRONG[2, :3, :3] *= 1.1
 HIGH = np.zeros((4, 7))
-HIGH[3] = [0, 0, 0, -1, 0, 9, 0]
+HIGH[3] = [0, 0, 0, -1, 0, np.nan, 0]
 HIGH[:3] = [0, 0, 0, -1, 0, 1, 0]
 
 
@@ -189,14 +189,14 @@ MISTAKES: list[Case] = [
         "the nearest rotation is U V' of its singular value decomposition U S V'",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH * np.inf),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH),
         Invalid,
-        "row 0: start must be finite, but joint 'panda_joint1' is NaN",
+        "row 3: start must be finite, but joint 'panda_joint6' is NaN",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[3] * np.nan, on_invalid="skip"),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[3], on_invalid="skip"),
         Invalid,
-        "start must be finite, but joint 'panda_joint1' is NaN",
+        "start must be finite, but joint 'panda_joint6' is NaN",
     ),
     (
         lambda: bik.solve_batch(PANDA, [[0, 0, 0], [0, np.inf, 0]]),

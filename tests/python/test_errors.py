@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from iiwa_circle import IIWA, START
-from mistakes import RADIANS, Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
+from mistakes import RADIANS, TURNED, Invalid, Limit, Unknown, Urdf, assert_told, told, with_entry
 
 import beetle_ik as bik
 
@@ -167,7 +167,8 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: {RADIANS}",
+            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: "
+            f"{TURNED}; {RADIANS}",
         ),
         (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),

@@ -150,7 +150,8 @@ SOLVERS = (
         (
             lambda: bik.Tracker(PANDA, [0, -40, 0, -135, 0, 90, 45], dt=0.01),
             Limit,
-            f"start: joint 'panda_joint2' at -40 is outside its limits [-1.7628, 1.7628] by 38.24 rad: {RADIANS}",
+            f"start: joint 'panda_joint2' at -40 is outside its limits [-1.7628, 1.7628] by 38.24 rad: "
+            f"move it inside; {RADIANS}",
         ),
         (
             lambda: bik.reachability(PANDA, voxel_size=0.1),  # type: ignore[call-arg]

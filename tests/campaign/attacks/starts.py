@@ -27,7 +27,7 @@ target = robot.fk(inside)
 solution = bik.solve(robot, target, start=start)
 tracker, refusal = tried(lambda: bik.Tracker(robot, start, dt={dt}, limits=limits))
 tracked = [] if tracker is None else [tracker.q] + [tracker.step(target).q for _ in range({ticks})]
-plan, no_plan = tried(lambda: bik.plan_point_to_point(robot, start_q=start, end_q=inside, limits=limits))
+plan, no_plan = tried(lambda: bik.plan_point_to_point(robot, start_q=start, end_q=end, limits=limits))
 wrapped, no_turn = tried(lambda: robot.wrap(turned))
 order = np.random.default_rng(0).permutation(len(start))
 named = robot.q_from([robot.joint_names[i] for i in order], np.take(start, order))
@@ -44,7 +44,7 @@ class StartsAsRead(Attack):
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         """Hard starts have several joints outside, by round numbers, at the bound of what is taken, or beside it."""
         joints = arms.easy_arm(random, int(random.integers(1, 7)))
-        arms.put(joints, random, hard)
+        arms.put(joints, random, hard, 2)
         for joint in joints:
             most = SLIDING if joint["kind"] == "prismatic" else TURNING
             share = float(random.choice([0.0, 1e-12, 1e-9, 1e-7, 1e-4, 0.1, 0.5, 1.0 - 1e-9, 1.0 + 1e-6, 1.5, 40.0]))
@@ -57,12 +57,13 @@ class StartsAsRead(Attack):
 
     def program(self, case: Case) -> str:
         joints = case["joints"]
-        inside, start = arms.configurations(joints)[0], self.start(case)
+        (inside, end), start = arms.configurations(joints), self.start(case)
         turned = inside + 2 * np.pi * np.array([joint["turns"] for joint in joints])
         limits = ", ".join(f"{kind}={values.tolist()}" for kind, values in self.limits(case).items())
         return (
-            f"{arms.written(joints)}inside, start = np.array({inside.tolist()}), np.array({start.tolist()})\n"
-            f"turned = np.array({turned.tolist()})\n{PROGRAM.format(limits=limits, dt=case['dt'], ticks=300)}"
+            f"{arms.written(joints)}inside, end = np.array({inside.tolist()}), np.array({end.tolist()})\n"
+            f"start, turned = np.array({start.tolist()}), np.array({turned.tolist()})\n"
+            f"{PROGRAM.format(limits=limits, dt=case['dt'], ticks=300)}"
         )
 
     def start(self, case: Case) -> np.ndarray:

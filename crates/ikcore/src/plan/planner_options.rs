@@ -7,6 +7,7 @@ use super::straight_line::StraightLine;
 use super::tpbso_options::Tpbso;
 use crate::error::{Error, Result};
 use crate::limits::{AdmittedStart, Limits, StartSlack};
+use crate::message::Setting;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
@@ -22,6 +23,16 @@ pub enum PointToPointMethod {
     MinMax,
     /// Polynomials through a via point, found by a swarm.
     Tpbso(Tpbso),
+}
+
+impl PointToPointMethod {
+    /// The method in messages.
+    pub(crate) fn named(&self) -> Setting {
+        match self {
+            Self::MinMax => Setting::Method("minmax"),
+            Self::Tpbso(_) => Setting::Method("tpbso"),
+        }
+    }
 }
 
 impl From<Tpbso> for PointToPointMethod {
@@ -51,6 +62,16 @@ pub enum AlongPathMethod {
     Timed,
     /// Redundancy found by a swarm, uniform time, splines through every second point.
     Tpbso(Tpbso),
+}
+
+impl AlongPathMethod {
+    /// The method in messages.
+    pub(crate) fn named(&self) -> Setting {
+        match self {
+            Self::Timed => Setting::Method("timed"),
+            Self::Tpbso(_) => Setting::Method("tpbso"),
+        }
+    }
 }
 
 impl From<Tpbso> for AlongPathMethod {

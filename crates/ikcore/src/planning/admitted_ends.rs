@@ -19,7 +19,7 @@ impl AdmittedEnds {
     /// # Errors
     /// [`Error::OutsideLimits`](crate::Error::OutsideLimits) for the start; those of the limits.
     pub fn read(robot: &Robot, start: &Endpoint, ends: &[Endpoint], options: &PointToPointOptions) -> Result<Self> {
-        let constant = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?;
+        let constant = ConstantLimits::for_robot(robot, options.limits.as_ref(), options.method.named())?;
         let limits = constant.position_limits(robot)?;
         let mut admitted = Self { start: start.clone(), ends: vec![], outside: vec![] };
         if let Endpoint::Configuration(q) = start {

@@ -33,7 +33,7 @@ pub fn plan_along_path(
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
-    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_along_path")?;
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), options.method.named())?;
     let mut plan = match options.admitted_start(robot, &limits)? {
         None => plan_admitted(robot, &tip_path, options, monitor),
         Some(start) => plan_from(robot, &tip_path, (start, &limits), options, monitor),

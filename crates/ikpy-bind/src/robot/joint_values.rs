@@ -46,8 +46,8 @@ impl PyRobot {
     /// For example:
     ///
     ///     >>> panda = bik.Robot.named("panda")
-    ///     >>> panda.wrap(np.radians([350, 10, 0, 270, 0, 90, 45])).round(2).tolist()
-    ///     [-0.17, 0.17, 0.0, -1.57, 0.0, 1.57, 0.79]
+    ///     >>> panda.wrap([6.0, 0.2, 0.0, 4.7, 0.0, 1.6, 0.8]).round(2).tolist()
+    ///     [-0.28, 0.2, 0.0, -1.58, 0.0, 1.6, 0.8]
     #[pyo3(signature = (q, *, near=None))]
     fn wrap<'py>(
         &self,
