@@ -2,7 +2,7 @@
 # core, then build and run `python tools/stub_docstrings.py`.
 #
 # Letters in the shape comments: n = degrees of freedom, m = items of a batch, k = samples in time.
-# SI units and radians throughout; results are read-only.
+# SI units and radians throughout; attributes of results are read-only.
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -76,6 +76,9 @@ class CallError(InvalidInputError, TypeError):
     """A call that does not fit its signature: an argument of the wrong type, one that is missing or unknown. Also a
     `TypeError`, which Python raises there.
     """
+
+class UnitsWarning(UserWarning):
+    """A value that looks like degrees where radians are due, or millimetres for metres. The call has used it as given."""
 
 # --- robots -------------------------------------------------------------------------------------
 
@@ -419,6 +422,8 @@ class Robot:
         (m), and the zero of each revolute joint by up to `angle` (rad). Use it in a `KinematicPlant` to simulate an arm whose
         model is wrong.
         """
+    def _doubt_degrees(self) -> None:
+        """Doubts limits that a MuJoCo model gives in degrees by default."""
     # For interop. Elements: ("fixed", pose), ("moving", joint, turns, axis, scale, offset) or ("link", name).
     def _chain(self) -> tuple[_Array, list[tuple[Any, ...]], _Array]:  # base, elements, tool
         """Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`."""
@@ -503,13 +508,14 @@ class VelocityEllipsoid:
         """
 
 def pose(
-    position: ArrayLike,
+    position: ArrayLike | None = None,
     *,
     xyzw: ArrayLike | None = None,
     wxyz: ArrayLike | None = None,
     rpy: ArrayLike | None = None,
     rotvec: ArrayLike | None = None,
     matrix: _Pose | None = None,
+    degrees: bool = False,
 ) -> _Array:
     """Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 
@@ -1697,6 +1703,24 @@ def solve_all(
         (8, True)
     """
 
+def calibrate(
+    robot: Robot,
+    q: ArrayLike,
+    measured: ArrayLike,
+    *,
+    fit: Sequence[str] | None = None,
+    sigma: ArrayLike | None = None,
+    robust: bool = True,
+    camera: str | None = None,
+    board: ArrayLike | None = None,
+    lens: ArrayLike | None = None,
+    center: ArrayLike | None = None,
+    plane: ArrayLike | None = None,
+    suggest: int = 0,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    seed: int = 0,
+) -> Calibration: ...
 def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],
@@ -1825,6 +1849,77 @@ def map_chunks(
         the lowest first; then two arrays (x, y, z) float32 for the best configuration found, NaN where there is none,
         or None without `quality`.
     """
+
+@final
+class Calibration:
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def success(self) -> bool: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def deviations(self) -> dict[str, float]: ...
+    @property
+    def covariance(self) -> _Array: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def rms_before(self) -> float: ...
+    @property
+    def rms_placed(self) -> float: ...
+    @property
+    def rms_after(self) -> float: ...
+    @property
+    def rms_held_out(self) -> float: ...
+    @property
+    def rotation_rms_before(self) -> float: ...
+    @property
+    def rotation_rms_after(self) -> float: ...
+    @property
+    def rotation_rms_held_out(self) -> float: ...
+    @property
+    def errors_before(self) -> _Array: ...
+    @property
+    def errors_after(self) -> _Array: ...
+    @property
+    def outliers(self) -> list[int]: ...
+    @property
+    def sigma(self) -> tuple[float, float]: ...
+    @property
+    def identifiable(self) -> Identifiability: ...
+    @property
+    def base(self) -> _Array: ...
+    @property
+    def tool(self) -> _Array: ...
+    @property
+    def camera(self) -> _Array | None: ...
+    @property
+    def board(self) -> _Array | None: ...
+    @property
+    def center(self) -> _Array | None: ...
+    @property
+    def plane(self) -> _Array | None: ...
+    @property
+    def suggested(self) -> _Array: ...
+    @property
+    def iterations(self) -> int: ...
+    def to_urdf(self, path_or_xml: str | os.PathLike[str]) -> str: ...
+
+@final
+class Identifiability:
+    @property
+    def rank(self) -> int: ...
+    @property
+    def possible(self) -> int: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def singular_values(self) -> _Array: ...
+    @property
+    def unknown(self) -> list[str]: ...
 
 @final
 class SelfMotion:

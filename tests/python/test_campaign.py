@@ -18,7 +18,7 @@ from campaign import attack, ledger, shrinking, soak, watch
 from campaign.attacks import ATTACKS
 from rough_attack import Rough
 
-ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra"}
+ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra", "equalities": "mujoco"}
 CASES = {
     "clear_ticks": 1,
     "clear_plans": 2,
@@ -78,6 +78,10 @@ SPOILED = {
     "round_poses": (
         "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
         "a pose that the arm has is called out of reach",
+    ),
+    "calibrations": (
+        "found = Changed(found, errors_after=found.errors_after + 1e-3)",
+        "the errors after are not as told",
     ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
@@ -153,9 +157,21 @@ SPOILED = {
         "pose = pose * nan",
         "a robot was read whose poses are not finite",
     ),
+    "equalities": (
+        "tips = tips + 0.01",
+        "an equality of the chain is open",
+    ),
+    "file_speeds": (
+        "tick_refusal = ''",
+        "a tracker does not name a joint that nothing slows down",
+    ),
     "scene_json": (
         "again = bik.Scene()",
         "a saved scene is loaded differently",
+    ),
+    "units": (
+        "said = ['one', 'too', 'many']",
+        "a value in another unit does not warn once",
     ),
     "csv": (
         "again = bik.Trajectory.from_samples([0.0, 1.0], [[1.0], [2.0]])",

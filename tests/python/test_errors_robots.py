@@ -139,7 +139,7 @@ def test_wrong_joint_positions_are_named(call: Callable[[], object], error: type
         (
             lambda: IIWA.with_tool(np.diag([1, 1, -1, 1])),
             Invalid,
-            "tool is not a rigid transform: its rotation is a reflection (determinant -1)",
+            "tool is not a rigid transform: its rotation is a reflection (determinant -1): turn one of its axes round",
         ),
         (
             lambda: IIWA.with_base(2 * np.eye(4)),

@@ -89,6 +89,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "ReachabilityMap.query": lambda: posed_query(1_000_000),
         "best_base": lambda: lambda: bik.best_base(UR5, UR5.fk(rows(1, 6)), region=[(-1, -1, 0), (1, 1, 0)]),
         "reachability": lambda: lambda: bik.reachability(UR5, voxel=0.02, directions=200, threads=2),
+        "calibrate": lambda: measured(60_000),
         "minimize": lambda: (
             lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, solver=bik.papers.PSO(stall_generations=None), stop=ENDLESS)
         ),
@@ -159,6 +160,12 @@ def with_rows(call: Callable[[np.ndarray], object], count: int) -> Callable[[], 
 def with_times(call: Callable[[np.ndarray], object], count: int = 3_000_000) -> Callable[[], object]:
     t = np.linspace(0.0, 50.0, count)
     return lambda: call(t)
+
+
+def measured(count: int) -> Callable[[], object]:
+    q = IIWA.random_configurations(count)
+    poses = IIWA.fk(q)
+    return lambda: bik.calibrate(IIWA, q, poses)
 
 
 def with_text(text: str) -> Callable[[], object]:
@@ -272,6 +279,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
+    "Calibration.to_urdf": "reads a text once, as from_urdf",
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(
         ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
@@ -283,7 +291,8 @@ SHORT: dict[str, str] = {
             "Robot.from_mjcf", "Robot.from_description", "Scene", "Scene.load", "Scene.save", "Scene.from_moveit",
             "Scene.from_trimesh", "Scene.from_octomap", "Scene.attach_to",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
-            "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
+            "Trajectory.from_csv", "plot.animation", "plot.calibration", "plot.model_free", "plot.plan", "plot.robot",
+            "plot.saturation",
             "plot.track", "plot.trajectory",
         ],
         PYTHON,

@@ -51,6 +51,10 @@ MIMIC = bik.Robot.from_urdf(
 )
 Q = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
 UR5_Q = np.array([0.3, -1.2, 1.4, -0.8, -1.1, 0.5])
+MEASURED_Q = UR5.random_configurations(40, seed=1)
+MEASURED = UR5.fk(MEASURED_Q)[:, :3, 3]
+ONE_Q = HELD.random_configurations(10, seed=1)
+CALIBRATED = bik.calibrate(HELD, ONE_Q, HELD.fk(ONE_Q))
 BEYOND, EDGE, ONWARD = Q + 9.5 * np.eye(7)[1], Q + 2.89 * np.eye(7)[0], np.eye(7)[0]
 BALL = bik.obstacles.Sphere((2.0, 0.0, 0.0), 0.1)
 RATED = bik.Limits(velocity=1.0, acceleration=2.0)
@@ -216,6 +220,13 @@ ROWS: list[Row] = [
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.0), 'voxel must be positive and finite, got 0'),
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.4, directions=6, rolls=1, store=at.file("a.zarr", "no store")), "store: folder '{folder}/a.zarr' cannot be written: File exists"),
     ("reachability", OSError, lambda at: api.reachability(PLANAR, task=api.tasks.Position(), voxel=0.3, store=at.full().path("a.zarr")), '[Errno 28] No space left on device'),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[:5], MEASURED[:5]), "5 measurements give 15 equations for 25 unknowns: measure 9 configurations or more, twice as many if you can, or fit fewer parts"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[[0] * 20], MEASURED[[0] * 20]), "all configurations are alike: move the arm between measurements, each joint over as much of its range as possible"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, 1e3 * MEASURED), "the measured positions spread 1000 times as far as the arm moves: lengths are in metres, and these look like millimetres; divide by 1000"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, np.degrees(MEASURED_Q).clip(-300, 300), MEASURED), "joint 'shoulder_pan_joint' reaches 300.0 rad, far beyond its limits: angles are in radians, and these look like degrees"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, MEASURED[:, :2]), "measured: expected positions (m, 3), poses (m, 4, 4) or distances (m,), got (40, 2)"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, np.full((40, 3), np.nan)), "measurements must be finite, but row 0, entry 0 is NaN"),
+    ("Calibration.to_urdf", Urdf, lambda at: CALIBRATED.to_urdf(FORK), "URDF: its chain of joints is not that of robot 'held': give the file that the robot was loaded from"),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.full((4, 4), np.nan)), 'target must be finite, but entry (0, 0) is NaN'),
     ("self_motion", Invalid, lambda at: api.self_motion(UR5, UR5.fk(np.zeros(6))), "self_motion needs one joint more than the target: robot 'ur5e' has 6 joints, and this target takes 6"),

@@ -126,16 +126,17 @@ def test_batches_may_have_any_memory_order() -> None:
     assert robot.jacobian(q[:0]).shape == (0, 6, 7)
 
 
-def test_input_is_left_alone_and_output_is_read_only() -> None:
+def test_input_is_left_alone_and_attributes_are_read_only() -> None:
     robot = bik.Robot.named("iiwa14")
     q = np.array(IIWA_ANGLES)
-    results = [robot.fk(q), robot.fk(q[None]), robot.jacobian(q), robot.link_poses(q), robot.lower]
+    results = [robot.fk(q), robot.fk(q[None]), robot.jacobian(q), robot.link_poses(q)]
     results += [robot.random_configurations(2), bik.pose([0, 0, 0]), robot.manipulability(q[None])]
     for result in results:
         assert result.dtype == np.float64
-        assert not result.flags.writeable
+        result[...] = 0.0
+    for attribute in (robot.lower, bik.solve(robot, [0.4, 0.1, 0.6]).q):
         with pytest.raises(ValueError, match="read-only"):
-            result[...] = 0.0
+            attribute[...] = 0.0
     np.testing.assert_array_equal(q, IIWA_ANGLES)
     assert q.flags.writeable
 

@@ -112,7 +112,7 @@ WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         [[0.0], [1.0]],
         {"limits": bik.Limits(acceleration=1.0, velocity=0.0)},
         bik.InfeasibleError,
-        "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+        "infeasible: the path moves joint 'q1', where the velocity limit is 0: give limits=Limits(velocity=...)",
     ),
     (
         [[0.0], [1.0]],

@@ -21,6 +21,11 @@ mod batch {
     mod plan_batch;
     mod solve_batch;
 }
+mod calibration {
+    mod arms;
+    mod urdf;
+    mod wrong_input;
+}
 mod closed_form {
     mod branches;
 }

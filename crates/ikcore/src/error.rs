@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::message::{Message, Setting, message};
+use crate::wording::named_joints;
 
 /// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -247,6 +248,12 @@ pub enum Error {
         /// The conflicting requirements.
         problem: Message,
     },
+    /// Measurements that cannot be right, or do not suffice.
+    #[error("{problem}")]
+    InvalidMeasurement {
+        /// Description of the problem, with advice.
+        problem: Message,
+    },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
@@ -297,13 +304,11 @@ pub enum Error {
         /// Advice on allowing the contact, after a semicolon; empty if a joint moves the link.
         remedy: Message,
     },
-    /// A joint with neither a velocity nor an acceleration limit.
-    #[error(
-        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: {remedy}"
-    )]
+    /// Joints with neither a velocity nor an acceleration limit.
+    #[error("{problem}: {remedy}")]
     NoPace {
-        /// The joint's name.
-        joint: String,
+        /// The joints and what they lack.
+        problem: String,
         /// The remedy.
         remedy: Message,
     },
@@ -386,9 +391,14 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
-    /// Creates an [`Error::NoPace`].
-    pub(crate) fn no_pace(joint: &str) -> Self {
-        Self::NoPace { joint: joint.into(), remedy: message!["give ", Setting::Limit("velocity")] }
+    /// Creates an [`Error::NoPace`]; `note` ends the remedy.
+    pub(crate) fn no_pace(joints: &[&str], note: &str) -> Self {
+        let lack = match joints {
+            [_] => "has neither a velocity nor an acceleration limit, so that nothing sets its pace",
+            _ => "have neither a velocity nor an acceleration limit, so that nothing sets their pace",
+        };
+        let remedy = message!["give ", Setting::Limit("velocity"), note];
+        Self::NoPace { problem: format!("{} {lack}", named_joints(joints)), remedy }
     }
 
     /// Returns the error with these words in place of the plain ones of each setting in its messages.
@@ -413,6 +423,7 @@ impl Error {
                 vec![remedy]
             }
             Self::InvalidRobot { problem, .. }
+            | Self::InvalidMeasurement { problem }
             | Self::Urdf { problem, .. }
             | Self::Srdf { problem, .. }
             | Self::Unreachable { problem, .. }

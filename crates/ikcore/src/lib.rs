@@ -50,9 +50,9 @@
 //! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
 //! | 2 | [`starts`], `closed_form`, `bodies` |
 //! | 3 | [`robot`] |
-//! | 4 | [`load`], [`limits`], [`obstacle`], [`manipulability`] |
-//! | 5 | [`motion`], [`task`], [`solver`] |
-//! | 6 | [`problem`] |
+//! | 4 | [`limits`], [`obstacle`], [`manipulability`] |
+//! | 5 | [`units`], [`motion`], [`task`], [`solver`] |
+//! | 6 | [`load`], [`problem`], [`calibration`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
 //! | 9 | `free_path`, `along_path` |
@@ -70,6 +70,7 @@ mod along_path;
 mod approach_retreat;
 pub mod batch;
 mod bodies;
+pub mod calibration;
 mod closed_form;
 pub mod error;
 mod free_path;
@@ -102,6 +103,7 @@ mod timing;
 mod tpbso;
 pub mod tracking;
 pub mod trajectory;
+pub mod units;
 mod wording;
 
 pub use error::{Error, Result};

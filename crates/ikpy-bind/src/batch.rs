@@ -5,16 +5,20 @@ use std::time::Duration;
 use ikcore::batch::{self, Batch, BatchOptions, OnInvalid, Targets};
 use ikcore::ik::{Solution, SolveReport};
 use ikcore::objective::Point;
+use ikcore::robot::Robot;
 use ikcore::solver::Status;
 use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::task::Subject;
+use ikcore::units::UnitDoubt;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator};
 
-use crate::convert::{Numbers, Rows, array, count, optional_count, row, rows, shape_text, table};
+use crate::convert::{Numbers, Rows, array, count, optional_count, row, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::ik::PySolution;
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_rows;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
@@ -24,6 +28,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
+use crate::units;
 use crate::wording::said;
 
 /// Solutions in the order of the targets, stored as columns. `b[i]` is a `Solution`; `b[10:20]` and `b[~b.success]` are
@@ -259,7 +264,10 @@ pub fn solve_batch(
         (Asked::One(_), [only]) => *only,
         _ => Targets::Tips(&each),
     };
-    let starts = starts.map(|starts| rows("starts", arm.name(), arm.dof(), starts)).transpose()?;
+    for ((subject, _), targets) in asked.iter().zip(&each) {
+        units::doubt((0..targets.len()).find_map(|row| doubt_about(arm, subject, targets, row)))?;
+    }
+    let starts = starts.map(|starts| joint_rows(arm, "starts", starts)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),
@@ -290,6 +298,16 @@ pub fn solve_batch(
     python_calls::log(py, "solve_batch", &said(&batch.message()))?;
     let tips = tip_errors(robot, &asked, |row| targets.read(row), &options.each, &batch.q)?;
     PyBatchSolution::new(py, batch, in_force, tips)
+}
+
+/// Doubts one row of the targets of a tip.
+fn doubt_about(robot: &Robot, subject: Subject, targets: &Targets<'_>, row: usize) -> Option<UnitDoubt> {
+    let position = match targets {
+        Targets::Positions(rows) => rows[row],
+        Targets::Poses(rows) => [rows[row][3], rows[row][7], rows[row][11]],
+        Targets::Tips(_) => return None,
+    };
+    units::of_point(robot, "targets", subject, &position)
 }
 
 fn read_targets<'a>(numbers: &'a Numbers<'_>) -> PyResult<Targets<'a>> {

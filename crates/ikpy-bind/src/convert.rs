@@ -5,6 +5,7 @@
 use std::ops::Deref;
 use std::path::PathBuf;
 
+use ikcore::math::pose::Drift;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
 use numpy::npyffi::{NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE};
@@ -273,6 +274,11 @@ pub fn rigid_rows(what: &str, rows: &[f64]) -> PyResult<Pose> {
     pose::from_matrix(what, &Matrix4::from_row_slice(rows)).map_err(raise)
 }
 
+/// Makes a rigid transform of 16 numbers, row by row, whose rotation may have drifted; also returns the drift.
+pub fn drifted_rows(what: &str, rows: &[f64]) -> PyResult<(Pose, Option<Drift>)> {
+    pose::from_drifted(what, &Matrix4::from_row_slice(rows)).map_err(raise)
+}
+
 /// Makes rigid transforms from stacked 4x4 matrices.
 pub fn rigid_matrices(numbers: &[f64]) -> PyResult<Vec<Pose>> {
     let matrices = numbers.chunks_exact(16).enumerate();
@@ -320,6 +326,14 @@ pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyAr
 /// Converts a matrix to a read-only one of Python.
 pub fn matrix4_array<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(read_only(PyArray1::from_slice(py, matrix.transpose().as_slice()).reshape([4, 4])?))
+}
+
+/// Makes the array that a method returns writable: it is a copy of the caller's own. Arrays of attributes stay read-only, since
+/// writing into them would change a record, or nothing.
+pub fn own<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+    // SAFETY: the array was made for this call and has no other owner yet.
+    unsafe { (*array.as_array_ptr()).fields.flags |= NPY_ARRAY_WRITEABLE };
+    array
 }
 
 fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {

@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use ikcore::Error;
-use pyo3::exceptions::{PyException, PyLookupError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyException, PyLookupError, PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
 use crate::wording::spelt;
 
-/// Exception classes, created once. Several have two bases, which pyo3's macro does not support.
+/// Classes of exceptions and warnings, created once. Several have two bases, which pyo3's macro does not support.
 struct Classes {
     base: Py<PyType>,
     invalid_input: Py<PyType>,
@@ -20,6 +20,7 @@ struct Classes {
     unsupported_limit: Py<PyType>,
     infeasible: Py<PyType>,
     call: Py<PyType>,
+    units: Py<PyType>,
 }
 
 impl Classes {
@@ -93,6 +94,11 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
                  `TypeError`, which Python raises there.",
                 vec![bound(&invalid_input), py.get_type::<PyTypeError>()],
             )?,
+            units: class(
+                "UnitsWarning",
+                "A value that looks like degrees where radians are due, or millimetres for metres. The call has used it as given.",
+                vec![py.get_type::<PyUserWarning>()],
+            )?,
             base,
             invalid_input,
             limit,
@@ -102,8 +108,9 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call } = classes(py)?;
-    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call] {
+    let Classes { base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call, units } =
+        classes(py)?;
+    for class in [base, invalid_input, unknown_name, urdf, limit, unsupported_limit, infeasible, call, units] {
         let class = class.bind(py);
         module.add(class.name()?, class)?;
     }
@@ -153,6 +160,16 @@ pub fn misfit(message: String) -> PyErr {
 /// Makes a `LimitError`, for limits checked in the binding.
 pub fn limit_error(message: String) -> PyErr {
     made(|classes| &classes.limit, message)
+}
+
+/// Adds a reason to the message of an error of this library, unless it speaks of units already.
+pub fn with_reason(py: Python<'_>, error: PyErr, reason: &str) -> PyErr {
+    let message = error.value(py).to_string();
+    let is_ours = classes(py).is_ok_and(|classes| error.is_instance(py, classes.base.bind(py)));
+    if !is_ours || message.contains("np.radians") {
+        return error;
+    }
+    PyErr::from_type(error.get_type(py), format!("{message}; {reason}"))
 }
 
 fn made(class: impl Fn(&Classes) -> &Py<PyType>, message: String) -> PyErr {

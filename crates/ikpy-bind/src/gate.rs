@@ -20,7 +20,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple, PyType};
 
-use crate::python_calls;
+use crate::{python_calls, units};
 
 /// Calling convention of PyO3 functions, except functions without arguments or with arbitrary keywords.
 const FAST: i32 = METH_FASTCALL | METH_KEYWORDS;
@@ -65,6 +65,7 @@ unsafe extern "C" fn gate<const I: usize>(
     }
     let Some(member) = MEMBERS[I].get() else { return std::ptr::null_mut() };
     let Some(call) = member.call.get().or_else(|| member.resolved(this)) else { return std::ptr::null_mut() };
+    units::begin_call();
     // SAFETY: these are the arguments of a call by Python, passed on as they are.
     let made = unsafe { call(this, arguments, count, names) };
     if made.is_null() {
@@ -74,7 +75,22 @@ unsafe extern "C" fn gate<const I: usize>(
             reword(py, member.object.bind(py), given);
         });
     }
-    made
+    with_doubts(made)
+}
+
+/// Ends a call with this result, null after an error. A warning that is made an error takes the place of the result.
+fn with_doubts(made: *mut PyObject) -> *mut PyObject {
+    if made.is_null() {
+        units::end_call_with_error();
+        return made;
+    }
+    let Err(error) = units::end_call() else { return made };
+    Python::attach(|py| {
+        // SAFETY: a result of this call, to which nothing else refers.
+        drop(unsafe { Bound::from_owned_ptr_or_opt(py, made) });
+        error.restore(py);
+    });
+    std::ptr::null_mut()
 }
 
 /// Imports numpy at the first call; sets an exception where that fails. The crate numpy panics if its own first import is interrupted by
@@ -300,6 +316,7 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
         let [class, given] = unsafe { [class, given].map(|object| Bound::from_borrowed_ptr(py, object)) };
         match derived(&class, &given) {
             Ok((make, made, arguments)) => {
+                units::begin_call();
                 // SAFETY: `made` derives from the class of the constructor.
                 let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
                 if instance.is_null() {
@@ -308,7 +325,7 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
                     let named = named.and_then(|named| named.cast_into().ok()).unwrap_or_else(|| PyDict::new(py));
                     reword(py, made.as_any(), || Ok((arguments, named)));
                 }
-                instance
+                with_doubts(instance)
             }
             Err(error) => {
                 error.restore(py);

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use ikcore::ik::{self, SolveOptions};
-use ikcore::math::Frame;
+use ikcore::math::{Frame, Pose};
 use ikcore::obstacle::Surroundings;
 use ikcore::robot::Robot;
 use ikcore::stored::{from_bytes, to_bytes};
@@ -12,8 +12,9 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::convert::{array, copied, point, rigid_rows, shape_text, vector};
+use crate::convert::{array, copied, point, rigid_rows, shape_text};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::PyNearest;
@@ -24,6 +25,7 @@ use crate::solve_arguments::SolveArguments;
 use crate::solver::PyStop;
 use crate::tips::{Asked, TipErrors, ToleranceArgument, read_tolerance, tip_errors};
 use crate::traversal::traversed;
+use crate::units;
 
 /// The best configuration found, and the outcome of the search.
 #[pyclass(name = "Solution", module = "beetle_ik", frozen)]
@@ -86,13 +88,13 @@ impl PySolution {
     }
 
     /// Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
-    /// deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    /// deepest overlap. NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
         self.whole().clearance()
     }
 
-    /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    /// The nearest two bodies, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
         self.whole().nearest.as_ref()?.clearance.nearest.clone().map(PyNearest::from)
@@ -174,7 +176,8 @@ impl PySolution {
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -219,7 +222,7 @@ pub fn solve(
     stop: Option<&PyStop>,
     seed: i128,
 ) -> PyResult<PySolution> {
-    let asked = Asked::read("target", robot, target, read_target)?;
+    let asked = read_targets("target", robot, target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let arguments = SolveArguments {
         task,
@@ -234,26 +237,45 @@ pub fn solve(
         stop,
         seed,
     };
-    let start = start.map(|start| vector("start", start)).transpose()?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;
     let surroundings = options.surroundings;
-    let around = (surroundings.is_given() && core.nearest.is_none())
+    let around = (surroundings.apply_to(&robot.core) && core.nearest.is_none())
         .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));
     Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
 }
 
+/// Reads the target of the only tip, or a dict of targets.
+pub fn read_targets(what: &str, robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Asked<Target>> {
+    let asked = Asked::read(what, robot, value, read_target)?;
+    for (subject, target) in asked.iter() {
+        units::doubt(units::of_target(&robot.core, what, subject, target))?;
+    }
+    Ok(asked)
+}
+
 /// Reads a pose (4, 4) or a position (3,).
 pub fn read_target(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Target> {
+    read_target_by(what, value, |rows| rigid_rows(what, rows))
+}
+
+/// Reads a pose (4, 4) by `rigid`, or a position (3,).
+pub fn read_target_by(
+    what: &str,
+    value: &Bound<'_, PyAny>,
+    rigid: impl FnOnce(&[f64]) -> PyResult<Pose>,
+) -> PyResult<Target> {
     let numbers = array(what, value)?;
     match numbers.shape() {
         [3] => Ok(Target::Position(point(what, value)?)),
-        [4, 4] => Ok(Target::Pose(Frame::from(&rigid_rows(what, numbers.as_slice()?)?))),
+        [4, 4] => Ok(Target::Pose(Frame::from(&rigid(numbers.as_slice()?)?))),
         shape => {
             let got = shape_text(shape);
             let remedy = match shape {
                 [6] => "; bik.pose(t[:3], rpy=t[3:]) makes a pose of a position and angles",
+                [16] => "; .reshape(4, 4) makes a matrix of 16 numbers, row by row",
                 [7] => "; bik.pose(t[:3], xyzw=t[3:]) makes a pose of a position and a quaternion, or wxyz=",
                 _ => "",
             };

@@ -1,6 +1,7 @@
 //! The native module `beetle_ik._core`: registration of classes and functions. Each file wraps one module of the core.
 
 mod batch;
+mod calibration;
 mod convert;
 mod error;
 mod gate;
@@ -8,6 +9,7 @@ mod goal;
 mod hash;
 mod ik;
 mod indexing;
+mod joint_order;
 mod limits;
 mod minimize;
 mod monitor;
@@ -34,6 +36,7 @@ mod tips;
 mod tracking;
 mod trajectory;
 mod traversal;
+mod units;
 mod wording;
 
 use pyo3::prelude::*;
@@ -69,6 +72,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(posture::planar_posture, module)?)?;
     module.add_class::<minimize::PyMinimum>()?;
     module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
+    calibration::register(module)?;
     path::register(module)?;
     obstacle::register(module)?;
     module.add_function(wrap_pyfunction!(motion::state_to_state, module)?)?;

@@ -57,6 +57,11 @@ pub fn log(py: Python<'_>, function: &str, message: &str) -> PyResult<()> {
     call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
 }
 
+/// Calls `beetle_ik.calls.units.warn(message)`, which raises a `UnitsWarning` in the caller's file.
+pub fn warn_of_units(py: Python<'_>, message: &str) -> PyResult<()> {
+    call(py, "beetle_ik.calls.units", "warn", (message,)).map(|_| ())
+}
+
 /// Makes a progress bar on the terminal.
 pub fn progress_bar(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     call(py, "beetle_ik.calls.progress", "Bar", ())

@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::convert::{
-    Numbers, array, copied, corners, count, counted, optional_count, rigid_matrices, shape_text, summary, table,
+    Numbers, array, copied, corners, count, counted, optional_count, own, rigid_matrices, shape_text, summary, table,
 };
 use crate::error::{invalid, raise};
 use crate::monitor::{long_call, watched};
@@ -51,7 +51,7 @@ impl PyMapGrid {
             rolls: count("rolls", rolls)?,
             region: region.map(|region| corners("region", region)).transpose()?,
         };
-        let surroundings = read_surroundings(obstacles, margin, self_collision)?;
+        let surroundings = read_surroundings(robot, obstacles, margin, self_collision)?;
         let options = MapOptions { task: read_task(task)?, surroundings, ..MapOptions::default() };
         Ok(Self { core: map::MapGrid::new(&robot.core, &layout, &options).map_err(raise)? })
     }
@@ -132,7 +132,7 @@ impl PyMapGrid {
         let (place, azimuth) = (voxels.centre(voxel), voxels.azimuth(voxel));
         let count = self.core.orientations().count();
         let poses = (0..count).flat_map(|i| rows(&self.core.pose(place, azimuth, i)));
-        table(py, poses.collect(), &[count, 4, 4])
+        table(py, poses.collect(), &[count, 4, 4]).map(own)
     }
 
     /// Returns the voxel and the nearest orientation of a pose (4, 4), or of each pose (n, 4, 4), as rows (x, y, z,
@@ -152,7 +152,7 @@ impl PyMapGrid {
             }
             Ok(found)
         })?;
-        table(py, found, &[poses.len(), 4])
+        table(py, found, &[poses.len(), 4]).map(own)
     }
 
     fn __repr__(&self) -> String {
@@ -224,7 +224,7 @@ pub fn map_chunks<'py>(
     let chunks = chunks.into_iter().map(|number| count("chunks", number)).collect::<PyResult<Vec<usize>>>()?;
     let options = MapOptions {
         task: read_task(task)?,
-        surroundings: read_surroundings(obstacles, margin, self_collision)?,
+        surroundings: read_surroundings(robot, obstacles, margin, self_collision)?,
         evaluations: count("evaluations", evaluations)?,
         quality,
     };

@@ -2,17 +2,20 @@
 
 use ikcore::ik::{self, SelfMotionOptions};
 use ikcore::stored::{from_bytes, to_bytes};
+use ikcore::task::Subject;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-use crate::convert::{count, counted, table, vector};
+use crate::convert::{count, counted, table};
 use crate::error::raise;
 use crate::ik::read_target;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 use crate::tips::read_only;
+use crate::units;
 
 /// A curve of configurations that keep the tip at a target.
 #[pyclass(name = "SelfMotion", module = "beetle_ik", frozen)]
@@ -131,8 +134,9 @@ pub fn self_motion(
 ) -> PyResult<Vec<PySelfMotion>> {
     robot.core.require_one_tip("self_motion").map_err(raise)?;
     let target = read_only("target", robot, target, read_target)?;
+    units::doubt(units::of_target(&robot.core, "target", Subject::Tip(0), &target))?;
     let (_, limits) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let start = start.map(|start| vector("start", start)).transpose()?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
     let options = SelfMotionOptions { start, spacing, limits, seed: count("seed", seed)? };
     let curves = watched(py, None, |watcher| ik::self_motion(&robot.core, &target, &options, watcher))?;
     let names: Vec<String> = robot.core.joints().iter().map(|joint| joint.name.clone()).collect();

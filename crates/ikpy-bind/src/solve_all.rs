@@ -10,10 +10,11 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyIterator, PyList};
 use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{count, table, vector};
+use crate::convert::{count, table};
 use crate::error::raise;
-use crate::ik::{PySolution, read_target};
+use crate::ik::{PySolution, read_targets};
 use crate::indexing::{Selection, iterate, select};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::outcome::outcome;
@@ -201,7 +202,8 @@ impl Unreached {
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -247,7 +249,7 @@ pub fn solve_all(
 ) -> PyResult<PySolutionSet> {
     let owner = robot;
     let robot = owner.get();
-    let asked = Asked::read("target", robot, target, read_target)?;
+    let asked = read_targets("target", robot, target)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot, &Sampling::once())?;
     let arguments = SolveArguments {
         task,
@@ -262,7 +264,12 @@ pub fn solve_all(
         stop,
         seed,
     };
-    let each = arguments.read(robot, &asked, start.map(|start| vector("start", start)).transpose()?, resolved)?;
+    let each = arguments.read(
+        robot,
+        &asked,
+        start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?,
+        resolved,
+    )?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;
     let options = AllOptions { each, limit, separation, redundancy, turns };

@@ -50,7 +50,7 @@ impl SolveArguments<'_, '_> {
             prefer: self.prefer.parse().map_err(raise)?,
             start,
             limits,
-            surroundings: read_surroundings(self.obstacles, self.margin, self.self_collision)?,
+            surroundings: read_surroundings(robot, self.obstacles, self.margin, self.self_collision)?,
             stop: self.stop.map_or(Stop::default(), PyStop::core),
             seed: count("seed", self.seed)?,
             ..SolveOptions::default()

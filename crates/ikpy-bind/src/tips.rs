@@ -66,6 +66,15 @@ impl<T> Asked<T> {
         }
     }
 
+    /// Returns the values, each with its subject.
+    pub fn iter(&self) -> impl Iterator<Item = (Subject, &T)> {
+        let subjects: &[Subject] = match self {
+            Self::One(_) => &[Subject::Tip(0)],
+            Self::Tips { subjects, .. } => subjects,
+        };
+        subjects.iter().copied().zip(self.values())
+    }
+
     /// Returns the values, in the order of their keys.
     pub fn values(&self) -> &[T] {
         match self {

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, row, shape_text, shortened, table, times, vector};
+use crate::convert::{Array, array, copied, counted, own, row, shape_text, shortened, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
@@ -152,19 +152,19 @@ impl PyTrajectory {
 
     /// Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times.
     fn max_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_velocity()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_velocity()))?)))
     }
 
     /// Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
     /// velocity at knots are not included.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_acceleration()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_acceleration()))?)))
     }
 
     /// Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
     /// at knots are not included.
     fn max_jerk<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, long_call(py, || Ok(self.0.max_jerk()))?))
+        Ok(own(row(py, long_call(py, || Ok(self.0.max_jerk()))?)))
     }
 
     /// Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped.
@@ -182,7 +182,7 @@ impl PyTrajectory {
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>, Array<'py>, Array<'py>)> {
         let times = self.0.sample_times(dt).map_err(raise)?;
         let (q, qd, qdd) = self.at_times(py, &times, false)?;
-        Ok((row(py, times), q, qd, qdd))
+        Ok((own(row(py, times)), q, qd, qdd))
     }
 
     /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
@@ -265,6 +265,7 @@ impl PyTrajectory {
             long_call(py, fill)?
         }
         let shape = if single { vec![n] } else { vec![times.len(), n] };
-        Ok((table(py, q, &shape)?, table(py, qd, &shape)?, table(py, qdd, &shape)?))
+        let made = |values| table(py, values, &shape).map(own);
+        Ok((made(q)?, made(qd)?, made(qdd)?))
     }
 }

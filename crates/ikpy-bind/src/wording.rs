@@ -40,6 +40,8 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
         Setting::Attach => "scene.attach_to(robot)",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
+        Setting::RadiansFromDegrees => "np.radians converts degrees",
+        Setting::AnglesInDegrees => "degrees=True takes degrees",
         _ => return setting.to_string(),
     };
     words.into()

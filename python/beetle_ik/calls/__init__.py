@@ -4,5 +4,6 @@ arguments   checks of arguments
 wording     errors of arguments that do not fit, with the argument, its value and what is expected
 names       suggestions for misspelt names
 text        counts and lists in messages, numbers that read back
+units       warnings about units
 progress    the progress bar, and the argument `progress`
 """

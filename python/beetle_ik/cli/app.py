@@ -1,12 +1,15 @@
 """The list of commands, and the reporting of errors."""
 
 import logging
+import warnings
+from functools import partial
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from .. import BeetleIkError, __version__
+from .. import BeetleIkError, UnitsWarning, __version__
+from .calibrate import calibrate
 from .doctor import doctor
 from .fk import fk
 from .options import numbers_joined
@@ -36,7 +39,9 @@ class _Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                warnings.showwarning = partial(_show_warning, warnings.showwarning)
+                return super().invoke(ctx)
         except BrokenPipeError:
             raise  # the reader of our output has closed the pipe: Typer exits silently
         except BeetleIkError as error:
@@ -50,6 +55,14 @@ class _Commands(TyperGroup):
             # True for every command: its files appear only when all of them are complete.
             typer.echo("Interrupted: nothing was written.", err=True)
             raise typer.Exit(_INTERRUPTED) from interrupt
+
+
+def _show_warning(others: Any, message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    """Prints a warning about units as one line; `others` shows those of other libraries."""
+    if issubclass(category, UnitsWarning):
+        typer.echo(f"Warning: {in_options(message)}", err=True)
+    else:
+        others(message, category, *place, **more)
 
 
 app = typer.Typer(
@@ -80,7 +93,7 @@ def _options_of_all(
         logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track, reach, view, doctor):
+for command in (robots, fk, solve, track, reach, calibrate, view, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

@@ -11,7 +11,7 @@ from .show import listed, print_json, print_pairs
 def fk(
     robot: RobotName = None,
     *,
-    q: Annotated[str, typer.Option("--q", help="Joint positions: q1,q2,... (rad; m for prismatic joints).")],
+    q: Annotated[str, typer.Option("--q", help="Joint positions: q1,q2,... (rad, or 90deg; m for slides).")],
     urdf: UrdfFile = None,
     tip: TipLink = None,
     base: BaseLink = None,

@@ -1,5 +1,6 @@
 """Options shared by several commands, and readers of their text."""
 
+import math
 import re
 from enum import StrEnum
 from pathlib import Path
@@ -169,8 +170,14 @@ def _named(name: str, options: dict[str, Any]) -> Robot:
     return robot
 
 
+_WITH_ANGLES = ("--q", "--start", "--start-q", "--end", "--end-q", "--rpy", "--target")
+
+
 def numbers(option: str, text: str, length: int | None = None) -> list[float]:
-    """Reads numbers separated by commas or spaces, as numpy prints them; `length` is the required count."""
+    """Reads numbers separated by commas or spaces, as numpy prints them; angles may be in degrees, such as 90deg.
+
+    `length` is the required count.
+    """
     entries = re.split(r"\s*,\s*|\s+", text.strip().removeprefix("[").removesuffix("]").strip())
     values = [_number(option, entry) for entry in entries]
     if length is not None and len(values) != length:
@@ -194,7 +201,7 @@ def sinusoid(option: str, text: str) -> Sinusoid:
     return Sinusoid(mean=mean, amplitude=amplitude, angular_frequency=angular_frequency)
 
 
-_NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
+_NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?:deg)?"
 _NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # `tip=0.4,` and `--position=0.4` too
 
 
@@ -212,7 +219,10 @@ def numbers_joined(arguments: list[str]) -> list[str]:
 
 
 def _number(option: str, entry: str) -> float:
+    degrees = entry.removesuffix("deg")
     try:
+        if degrees != entry and option in _WITH_ANGLES:
+            return math.radians(float(degrees))
         return float(entry)
     except ValueError:
         raise InvalidInputError(f"{option}: '{entry}' is not a number") from None

@@ -32,7 +32,9 @@ def solve(
     robot: RobotName = None,
     *,
     position: Annotated[str | None, typer.Option(help="Target position of the tip: x,y,z in m.")] = None,
-    rpy: Annotated[str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad; default: free.")] = None,
+    rpy: Annotated[
+        str | None, typer.Option(help="Target orientation: roll,pitch,yaw in rad, or as 90deg; default: free.")
+    ] = None,
     target: Annotated[
         list[str] | None,
         typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),

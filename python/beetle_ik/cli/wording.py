@@ -3,6 +3,8 @@
 _OPTIONS = {
     **{f"limits=Limits({kind}=...)": f"--{kind}-limit" for kind in ("velocity", "acceleration", "jerk")},
     **{f'method="{name}"': f"--method {name}" for name in ("minmax", "timed", "tpbso")},
+    "np.radians converts degrees": "90deg is 90 degrees",
+    "degrees=True takes degrees": "90deg is 90 degrees",
     "budget in stop=Stop(...)": "budget (--max-evaluations)",
     "ease=True": "--ease",
     "free_start=True": "--free-start",

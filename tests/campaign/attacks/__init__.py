@@ -4,9 +4,11 @@ from importlib import import_module
 
 from ..attack import Attack
 from . import (
+    calibration,
     calls,
     clearance,
     command_line,
+    described,
     kinematics,
     motion,
     own_points,
@@ -17,12 +19,13 @@ from . import (
     solving,
     streams,
     tracking,
+    units,
     xacro_files,
 )
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, own_points, readers),
-    *(xacro_files, calls, command_line),
+    *(xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

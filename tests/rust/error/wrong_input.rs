@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{message, robot};
+use crate::common::{jumping, message, robot};
 use ikcore::Error;
 use ikcore::ik::{SolveOptions, solve};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
@@ -33,11 +33,13 @@ fn reference() -> Reference {
 /// Message of `track` for these options and this start on the planar arm.
 #[track_caller]
 fn track_says(start: &[f64], options: TrackOptions) -> String {
-    message(track(&robot("planar5"), &reference(), Some(start), &options, &mut Unattended))
+    let planar = robot("planar5");
+    let options = TrackOptions { limits: options.limits.or_else(|| jumping(&planar)), ..options };
+    message(track(&planar, &reference(), Some(start), &options, &mut Unattended))
 }
 
 fn planar_limits(field: Field, profile: Profile) -> ikcore::Result<Limits> {
-    Limits::of(&robot("planar5")).replace(field, vec![profile])
+    jumping(&robot("planar5")).unwrap().replace(field, vec![profile])
 }
 
 fn within(field: Field, profile: Profile) -> TrackOptions {
@@ -162,7 +164,8 @@ fn matrices_that_are_no_poses_are_refused() {
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 1.0, 1.0, 2.0].into())), last_row);
     let scaled = "target is not a rigid transform: R'R differs from the identity by 3.000e0; the nearest rotation is U V' of its singular value decomposition U S V'";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, 2.0, 1.0, 1.0].into())), scaled);
-    let mirrored = "target is not a rigid transform: its rotation is a reflection (determinant -1)";
+    let mirrored =
+        "target is not a rigid transform: its rotation is a reflection (determinant -1): turn one of its axes round";
     assert_eq!(says(Matrix4::from_diagonal(&[1.0, -1.0, 1.0, 1.0].into())), mirrored);
     let nowhere = pose::translation(0.0, INFINITE, 0.0);
     let says = "tool must be finite, but entry (1, 3) is inf";

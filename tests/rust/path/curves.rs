@@ -300,6 +300,6 @@ fn wrong_references_are_named() {
     let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
     assert_eq!(
         message(path.with_orientation(mirror)),
-        "path orientation is not a rigid transform: its rotation is a reflection (determinant -1)"
+        "path orientation is not a rigid transform: its rotation is a reflection (determinant -1): turn one of its axes round"
     );
 }

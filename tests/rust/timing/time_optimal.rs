@@ -259,11 +259,11 @@ fn mistakes_are_named() {
         ),
         (
             timed(&[(Field::Acceleration, vec![1.0, 0.0])], TimingOptions::default()).map(drop),
-            "infeasible: the path moves joint 'q2' from 0 to 2, but its acceleration limit is 0",
+            "infeasible: the path moves joint 'q2', where the acceleration limit is 0: give an acceleration limit",
         ),
         (
             timed(&[standard.clone(), (Field::Velocity, vec![0.0, 1.0])], TimingOptions::default()).map(drop),
-            "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+            "infeasible: the path moves joint 'q1', where the velocity limit is 0: give a velocity limit",
         ),
         (
             timed(&[standard.clone(), (Field::Velocity, vec![-1.0])], TimingOptions::default()).map(drop),

@@ -40,7 +40,7 @@ pub(crate) fn composed(
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
-    free_path::require_pace(robot, &limits)?;
+    limits.require_pace()?;
     let narrowed = space.map(|space| space.narrowed(END_RESERVE));
     let mut pieces = Pieces { robot, options, limits: &limits, space, narrowed: narrowed.as_ref(), evaluations: 0 };
     let way_out = if options.free_start { pieces.way_out(start)? } else { None };

@@ -21,6 +21,9 @@ pub struct Limits {
     pub(super) velocity: Vec<Profile>,
     pub(super) acceleration: Option<Vec<Profile>>,
     pub(super) jerk: Option<Vec<Profile>>,
+    /// Whether the velocity limits are those of the robot. Infinite ones that were given are meant.
+    #[serde(skip)]
+    pub(super) own_velocity: bool,
 }
 
 impl Limits {
@@ -34,6 +37,7 @@ impl Limits {
             velocity: joints.iter().map(|joint| Profile::Constant(joint.velocity)).collect(),
             acceleration: None,
             jerk: None,
+            own_velocity: true,
         }
     }
 
@@ -60,7 +64,7 @@ impl Limits {
     pub fn none(joints: Vec<String>) -> Self {
         let all = |value: f64| vec![Profile::Constant(value); joints.len()];
         let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
-        Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
+        Self { joints, lower, upper, velocity, acceleration: None, jerk: None, own_velocity: false }
     }
 
     /// Replaces one field for all joints, with one profile per joint or a single one for all of them.
@@ -83,7 +87,7 @@ impl Limits {
         match field {
             Field::Lower => self.lower = profiles,
             Field::Upper => self.upper = profiles,
-            Field::Velocity => self.velocity = profiles,
+            Field::Velocity => (self.velocity, self.own_velocity) = (profiles, false),
             Field::Acceleration => self.acceleration = Some(profiles),
             Field::Jerk => self.jerk = Some(profiles),
         }

@@ -5,11 +5,13 @@
 //! | `field` | [`Field`]: positions, velocity, acceleration, jerk |
 //! | `profile` | [`Profile`]: one limit of one joint over time |
 //! | `joint_limits` | [`Limits`]: all joints, all fields |
+//! | `pace` | joints without any limit, and joints that a limit of zero locks |
 //! | `tick_box` | `TickBox`: position and velocity limits as the box of one tick |
 //! | `braking` | acceleration limits narrow that box, so that joints can stop in time |
 
 mod field;
 mod joint_limits;
+mod pace;
 mod profile;
 mod tick_box;
 

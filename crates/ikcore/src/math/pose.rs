@@ -1,5 +1,7 @@
 //! Construction of rigid transforms, and validation of 4x4 matrices.
 
+use std::fmt;
+
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::Pose;
@@ -8,11 +10,17 @@ use crate::error::{Error, Result, require_finite};
 /// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation: that of three decimals.
 const ORTHOGONALITY_TOLERANCE: f64 = 2e-3;
 
+/// Largest deviation of a rotation that was multiplied for long and never made a rotation again.
+const DRIFT_TOLERANCE: f64 = 0.25;
+
+/// Rounding of the last row of a pose.
+const LAST_ROW_TOLERANCE: f64 = 1e-6;
+
 /// Deviation up to which Gram-Schmidt finds the nearest rotation but for rounding.
 const GRAM_SCHMIDT: f64 = 1e-6;
 
-/// Newton steps to the nearest rotation; each squares the deviation.
-const NEWTON_STEPS: usize = 3;
+/// Newton steps to the nearest rotation, from the largest drift; each squares the deviation.
+const NEWTON_STEPS: usize = 5;
 
 /// Builds a transform from its parts; `rotation` must be a rotation matrix.
 pub fn from_parts(translation: [f64; 3], rotation: Matrix3<f64>) -> Pose {
@@ -103,28 +111,77 @@ pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
     check_matrix(what, matrix).map(|()| from_checked(matrix))
 }
 
+/// Drift of a rotation: largest entry of R'R less the identity, where it is more than that of rounded numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drift(pub f64);
+
+impl fmt::Display for Drift {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(deviation) = self;
+        write!(
+            f,
+            "the rotation of the target has drifted: R'R differs from the identity by {deviation:.3e}; the nearest rotation is taken"
+        )
+    }
+}
+
+/// Reads a homogeneous 4x4 matrix as [`from_matrix`] does, and also one whose rotation has drifted by up to 0.25, as that of
+/// turns multiplied in single precision for long. Returns the pose with the nearest rotation, and the drift.
+///
+/// # Errors
+/// [`Error::NotFinite`] and [`Error::NotRigid`], as [`from_matrix`].
+pub fn from_drifted(what: &str, matrix: &Matrix4<f64>) -> Result<(Pose, Option<Drift>)> {
+    check_to(what, matrix, DRIFT_TOLERANCE)?;
+    let deviation = deviation(matrix);
+    let drift = (deviation > ORTHOGONALITY_TOLERANCE).then_some(Drift(deviation));
+    Ok((from_checked(matrix), drift))
+}
+
 /// Checks that a matrix is a pose; `what` names the matrix in errors.
 ///
 /// # Errors
 /// As [`from_matrix`].
 pub fn check_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<()> {
+    check_to(what, matrix, ORTHOGONALITY_TOLERANCE)
+}
+
+/// Checks that a matrix is a pose whose R'R differs from the identity by at most `tolerance`.
+fn check_to(what: &str, matrix: &Matrix4<f64>, tolerance: f64) -> Result<()> {
     require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
-    let last_row = matrix.row(3);
-    if (last_row[0], last_row[1], last_row[2], last_row[3]) != (0.0, 0.0, 0.0, 1.0) {
-        let row = last_row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
-        return Err(not_rigid(format!("its last row is ({row}), not (0, 0, 0, 1)")));
+    if let Some(problem) = fault_of_last_row(matrix) {
+        return Err(not_rigid(problem));
     }
-    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
-    let deviation = (rotation.transpose() * rotation - Matrix3::identity()).amax();
-    if deviation > ORTHOGONALITY_TOLERANCE {
+    let deviation = deviation(matrix);
+    if deviation > tolerance {
         let remedy = "the nearest rotation is U V' of its singular value decomposition U S V'";
         return Err(not_rigid(format!("R'R differs from the identity by {deviation:.3e}; {remedy}")));
     }
-    if rotation.determinant() < 0.0 {
-        return Err(not_rigid("its rotation is a reflection (determinant -1)".into()));
+    if matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0 {
+        let remedy = "turn one of its axes round";
+        return Err(not_rigid(format!("its rotation is a reflection (determinant -1): {remedy}")));
     }
     Ok(())
+}
+
+/// Returns the largest entry of R'R less the identity.
+#[inline]
+fn deviation(matrix: &Matrix4<f64>) -> f64 {
+    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
+    (rotation.transpose() * rotation - Matrix3::identity()).amax()
+}
+
+/// Describes a last row that is not (0, 0, 0, 1), but for rounding.
+fn fault_of_last_row(matrix: &Matrix4<f64>) -> Option<String> {
+    let last_row = matrix.row(3);
+    let off = last_row.iter().zip([0.0, 0.0, 0.0, 1.0]).any(|(entry, due)| (entry - due).abs() > LAST_ROW_TOLERANCE);
+    if !off {
+        return None;
+    }
+    let row = last_row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let transposed = matrix.column(3).iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(entry, due)| *entry == due);
+    let remedy = if transposed { ": transpose it, so that the position is its last column" } else { "" };
+    Some(format!("its last row is ({row}), not (0, 0, 0, 1){remedy}"))
 }
 
 /// Returns the pose of a matrix accepted by [`check_matrix`], orthonormalised.
@@ -171,6 +228,42 @@ mod tests {
             assert!((taken - nearest).amax() < 1e-14, "{}", taken - nearest);
             assert!((taken.transpose() * taken - Matrix3::identity()).amax() < 1e-15);
         }
+    }
+
+    #[test]
+    fn a_drifted_rotation_is_taken_as_the_nearest_one() {
+        let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
+        let exact = Rotation3::from_axis_angle(&axis, 1.2).into_inner();
+        let strain = Matrix3::new(0.03, 0.01, -0.02, 0.0, -0.05, 0.04, 0.01, 0.0, 0.06);
+        for size in [1e-3, 0.1, 1.0] {
+            let matrix = (exact + strain * size).to_homogeneous();
+            let (pose, drift) = from_drifted("target", &matrix).unwrap();
+            let svd = matrix.fixed_view::<3, 3>(0, 0).into_owned().svd(true, true);
+            let nearest = svd.u.unwrap() * svd.v_t.unwrap();
+            assert!((pose.rotation.into_inner() - nearest).amax() < 1e-12, "{size}");
+            assert_eq!(drift.is_some(), from_matrix("target", &matrix).is_err(), "{size}");
+        }
+        for (matrix, problem) in [
+            (exact * 1.2, "R'R differs from the identity by 4.400e-1; "),
+            (
+                exact * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0)),
+                "its rotation is a reflection (determinant -1): ",
+            ),
+        ] {
+            let error = from_drifted("target", &matrix.to_homogeneous()).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("target is not a rigid transform: {problem}")), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_transposed_pose_is_named_and_a_rounded_last_row_taken() {
+        let mut matrix = translation(0.4, 0.0, 0.3).to_homogeneous();
+        matrix[(3, 3)] = 1.0 - 1e-7;
+        assert_eq!(from_matrix("T", &matrix).unwrap(), translation(0.4, 0.0, 0.3));
+        let error = from_matrix("T", &translation(0.4, 0.0, 0.3).to_homogeneous().transpose()).unwrap_err();
+        let expected = "T is not a rigid transform: its last row is (0.4, 0, 0.3, 1), not (0, 0, 0, 1): \
+            transpose it, so that the position is its last column";
+        assert_eq!(error.to_string(), expected);
     }
 
     #[test]

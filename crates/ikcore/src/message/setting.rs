@@ -63,6 +63,10 @@ pub enum Setting {
     Attach,
     /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
     WithoutRobot(&'static str),
+    /// Angles that are converted from degrees before a call.
+    RadiansFromDegrees,
+    /// Angles that a call takes in degrees.
+    AnglesInDegrees,
 }
 
 impl fmt::Display for Setting {
@@ -99,6 +103,7 @@ impl fmt::Display for Setting {
             Self::CapsulesAlongLinks => "with_capsules_along_links",
             Self::Attach => "a robot that carries it",
             Self::WithoutRobot(_) => "without_robot",
+            Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }
 }

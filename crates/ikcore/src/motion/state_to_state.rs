@@ -91,26 +91,18 @@ pub fn stop(from: &ArmState, limits: &Limits) -> Result<Trajectory> {
 /// The limits of each joint on velocity, acceleration and jerk.
 fn rates(limits: &Limits) -> Result<Vec<Rates>> {
     limits.validate(0.0, 0)?;
-    let joints = limits.joint_names();
     let constants = |field: Field| -> Result<Vec<f64>> {
         let mut values = limits.constants(field, METHOD, "give numbers")?;
-        values.resize(joints.len(), f64::INFINITY);
-        match values.iter().position(|value| *value <= 0.0) {
-            None => Ok(values),
-            Some(j) => {
-                Err(Error::out_of_range(format!("{field} limit of joint '{}'", joints[j]), "positive", values[j]))
-            }
-        }
+        values.resize(limits.dof(), f64::INFINITY);
+        Ok(values)
     };
     let [velocity, acceleration, jerk] =
         [constants(Field::Velocity)?, constants(Field::Acceleration)?, constants(Field::Jerk)?];
     constants_of_position(limits)?;
+    limits.require_unlocked()?;
+    limits.require_pace()?;
     let of_joint = |j: usize| Rates { velocity: velocity[j], acceleration: acceleration[j], jerk: jerk[j] };
-    let unlimited = |j: &usize| [velocity[*j], acceleration[*j], jerk[*j]].iter().all(|limit| limit.is_infinite());
-    match (0..joints.len()).find(unlimited) {
-        None => Ok((0..joints.len()).map(of_joint).collect()),
-        Some(j) => Err(Error::no_pace(&joints[j])),
-    }
+    Ok((0..limits.dof()).map(of_joint).collect())
 }
 
 /// Checks that the position limits do not vary over time.

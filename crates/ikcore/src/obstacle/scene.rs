@@ -76,7 +76,8 @@ impl Deref for SceneRobot<'_> {
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
-    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, or one that may touch a link without a body;
+    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, and for one that may touch a link
+    /// without a body, or every link;
     /// [`Error::Contradiction`] if the robot carries something in the scene ([`Obstacles::beside_carried`]), and this one does not.
     pub fn new(robot: impl Into<SceneRobot<'a>>, obstacles: impl Into<Obstacles>) -> Result<Self> {
         let (robot, obstacles) = (robot.into(), obstacles.into());

@@ -15,6 +15,7 @@
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `upright_axis` | a vertical first axis |
 //! | `mobile_base` | a robot on a base that moves |
+//! | `measured_geometry` | a robot with other transforms and offsets, as a calibration finds them |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
@@ -32,6 +33,7 @@ mod kinematics;
 mod link_capsule;
 mod links;
 mod manufacturing_errors;
+mod measured_geometry;
 mod mobile_base;
 mod model;
 mod off_chain;

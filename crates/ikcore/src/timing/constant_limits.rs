@@ -10,6 +10,7 @@ use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot};
 use crate::trajectory::Trajectory;
+use crate::wording::named_joints;
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +53,9 @@ impl ConstantLimits {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), Some(joint.kind))).collect();
-        let limits = Self::read(&limits, joints, method.into(), "give numbers")?;
-        limits.require_motion()?;
-        Ok(limits)
+        let constant = Self::read(&limits, joints, method.into(), "give numbers")?;
+        limits.require_unlocked()?;
+        Ok(constant)
     }
 
     fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: Message, remedy: &str) -> Result<Self> {
@@ -116,11 +117,13 @@ impl ConstantLimits {
                     return Err(Error::Infeasible { problem: problem.into() });
                 }
             }
-            if let Some((field, _)) = self.rates().into_iter().find(|(_, limits)| limits[j] == 0.0)
-                && highest > lowest
-            {
-                let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
-                return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0").into() });
+        }
+        for (field, limits) in self.rates() {
+            let is_stuck = |j: &usize| limits[*j] == 0.0 && path.range(*j)[1] > path.range(*j)[0];
+            let stuck: Vec<&str> = (0..joints.len()).filter(is_stuck).map(|j| joints[j].as_str()).collect();
+            if !stuck.is_empty() {
+                let moves = format!("the path moves {}, where the {field} limit is 0: give ", named_joints(&stuck));
+                return Err(Error::Infeasible { problem: message![moves, Setting::Limit(field)] });
             }
         }
         Ok(())
@@ -221,6 +224,16 @@ impl ConstantLimits {
         Limits::of(robot).replace(Field::Lower, constant(&self.lower))?.replace(Field::Upper, constant(&self.upper))
     }
 
+    /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
+    ///
+    /// # Errors
+    /// [`Error::NoPace`].
+    pub(crate) fn require_pace(&self) -> Result<()> {
+        let free = |j: &usize| self.rates().iter().all(|(_, limits)| limits[*j].is_infinite());
+        let joints: Vec<&str> = (0..self.dof()).filter(free).map(|j| self.joint_name(j)).collect();
+        if joints.is_empty() { Ok(()) } else { Err(Error::no_pace(&joints, "")) }
+    }
+
     /// Checks that every joint has a velocity limit, which `method` needs.
     ///
     /// # Errors
@@ -272,16 +285,5 @@ impl ConstantLimits {
             }
         }
         found
-    }
-
-    /// Checks that no joint is locked by a zero limit.
-    fn require_motion(&self) -> Result<()> {
-        for (name, values) in self.rates() {
-            if let Some(j) = values.iter().position(|value| *value <= 0.0) {
-                let what = format!("{name} limit of joint '{}'", self.joint_name(j));
-                return Err(Error::out_of_range(what, "positive", values[j]));
-            }
-        }
-        Ok(())
     }
 }

@@ -333,6 +333,7 @@ impl Record {
                 "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
             }
             None if self.was_held_back() => self.held_back(),
+            None if let Some(lock) = self.limits.lock() => message![lock, "; or ", Status::Lost.advice()],
             None if self.starts_too_fast() => message![
                 "the path moves at its start, where the arm is at rest: ",
                 Setting::Ease,

@@ -15,6 +15,7 @@ use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::Limits;
 use crate::math::vector::write_within;
+use crate::message::Message;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
 use crate::problem::Problem;
@@ -85,6 +86,11 @@ impl Session {
     /// Limits in force.
     pub fn limits(&self) -> &Limits {
         &self.arm.limits
+    }
+
+    /// Names the joints that cannot move because of limits of zero, with the remedy; `None` without such limits.
+    pub fn lock(&self) -> Option<&Arc<Message>> {
+        self.arm.lock.as_ref()
     }
 
     /// Time step (s).
@@ -325,7 +331,8 @@ impl Session {
         let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let space = if surroundings.is_given() { surroundings.clear_space(&self.arm.robot)? } else { None };
+        let space =
+            if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
         if space.is_some() || !self.arm.has_one_tip() {
             let safety = match self.safety.take() {
                 Some(safety) => self.safety.insert(safety),

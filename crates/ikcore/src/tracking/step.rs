@@ -41,7 +41,8 @@ impl Step {
         self.message_with(measured.map_or_else(|| self.status.advice(), Measured::advice))
     }
 
-    fn message_with(&self, advice: Message) -> Message {
+    /// Returns [`message`](Self::message) with this `advice`, where one is given.
+    pub fn message_with(&self, advice: impl Into<Message>) -> Message {
         let error = &self.error;
         let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
         let how = match self.status {

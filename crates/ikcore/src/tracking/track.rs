@@ -50,7 +50,7 @@ pub fn track_tips(
         let does = " is for one tip: leave it out, or bring the arms to the paths first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
-    let limits = options.limits_for(robot);
+    let limits = options.limits_for(robot)?;
     limits.validate(first.dt(), first.len() - 1)?;
     options.require_tips(robot)?;
     let only = options.only_task()?; // checked before a start is solved with other tolerances

@@ -59,7 +59,14 @@ impl TrackOptions {
     }
 
     /// Limits in force for `robot`.
-    pub(super) fn limits_for(&self, robot: &Robot) -> Limits {
-        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
+    ///
+    /// # Errors
+    /// [`Error::NoPace`] for a joint that nothing slows down, unless infinite velocity limits were given;
+    /// [`Error::WrongLength`].
+    pub(super) fn limits_for(&self, robot: &Robot) -> Result<Limits> {
+        let limits = self.limits.clone().unwrap_or_else(|| Limits::of(robot));
+        limits.require_for(robot)?;
+        limits.require_pace_or_consent()?;
+        Ok(limits)
     }
 }

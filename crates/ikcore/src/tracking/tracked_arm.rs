@@ -11,6 +11,7 @@ use super::target_stream::TargetStream;
 use super::track_options::TrackOptions;
 use crate::error::Result;
 use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::message::Message;
 use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Aims;
@@ -20,6 +21,8 @@ use crate::task::Aims;
 pub(super) struct TrackedArm {
     pub robot: Arc<Robot>,
     pub limits: Limits,
+    /// Names the joints that limits of zero lock.
+    pub lock: Option<Arc<Message>>,
     pub limit_at: LimitAt,
     pub tick_box: TickBox,
     /// State and reachable set under acceleration or jerk limits.
@@ -41,8 +44,7 @@ impl TrackedArm {
     /// # Errors
     /// Errors of wrong tasks, limits or settings of targets, and of a start outside limits or region.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot));
-        limits.require_for(robot)?;
+        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot)?);
         limits.validate(dt, 0)?;
         let limited = LimitedState::new(&limits, dt);
         let repeated = options.rule.extrapolates(limited.is_some()).then(|| RepeatedTargets::new(dt));
@@ -56,6 +58,7 @@ impl TrackedArm {
             robot,
             tick_box: TickBox::around(start, &limits),
             limited,
+            lock: limits.lock().map(Arc::new),
             limits,
             limit_at: options.limit_at,
             tasks,

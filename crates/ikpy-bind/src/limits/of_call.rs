@@ -1,12 +1,14 @@
 //! Reading of the `limits` argument: for the result of a call, and for the core.
 
 use ikcore::limits::Limits;
+use ikcore::units;
 use pyo3::prelude::*;
 
 use super::{PyLimits, Sampling};
 use crate::convert::summary;
 use crate::error::misfit;
 use crate::robot::PyRobot;
+use crate::units::doubt;
 
 /// Reads a required `limits` argument.
 pub fn required_limits<'a>(limits: &'a Bound<'_, PyAny>) -> PyResult<&'a PyLimits> {
@@ -29,7 +31,9 @@ pub fn limits_of_call(
         None => Ok((robot.limits(py)?, None)),
         Some(limits) => {
             let in_force = Py::new(py, limits.in_force(py, &robot.core))?;
-            Ok((in_force, Some(limits.resolve(py, &robot.core, sampling)?)))
+            let resolved = limits.resolve(py, &robot.core, sampling)?;
+            doubt(units::of_limits_of_call(&robot.core, &resolved))?;
+            Ok((in_force, Some(resolved)))
         }
     }
 }

@@ -11,6 +11,8 @@ use super::from_core::wrapped;
 use super::moving::PyMoving;
 use crate::convert::summary;
 use crate::error::invalid;
+use crate::robot::PyRobot;
+use crate::units;
 
 /// The obstacles of a call.
 pub struct GivenObstacles {
@@ -21,8 +23,15 @@ pub struct GivenObstacles {
 }
 
 impl GivenObstacles {
+    /// Reads the obstacles of a call for `robot`; None means no obstacles.
+    pub fn read_for(py: Python<'_>, robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let given = Self::read(py, value)?;
+        doubt_obstacles(robot, Some(&given.core))?;
+        Ok(given)
+    }
+
     /// Reads any sequence of obstacles; None means no obstacles.
-    pub fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    fn read(py: Python<'_>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         if let Some(prepared) = value.and_then(prepared) {
             let PyPreparedObstacles { core, tuple } = prepared.get();
             return Ok(Self { core: core.clone(), tuple: tuple.clone_ref(py) });
@@ -32,8 +41,14 @@ impl GivenObstacles {
     }
 }
 
+/// Doubts the unit of obstacles.
+fn doubt_obstacles(robot: &PyRobot, obstacles: Option<&Obstacles>) -> PyResult<()> {
+    units::doubt(obstacles.and_then(|obstacles| units::of_obstacles(&robot.core, obstacles)))
+}
+
 /// Reads the arguments `obstacles`, `margin` and `self_collision` of a call.
 pub fn read_surroundings(
+    robot: &PyRobot,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
     self_collision: Option<bool>,
@@ -42,7 +57,9 @@ pub fn read_surroundings(
         Some(prepared) => Ok(prepared.get().core.clone()),
         None => shapes(&items(given)?),
     };
-    Ok(Surroundings { obstacles: obstacles.map(read).transpose()?, margin, self_collision })
+    let obstacles = obstacles.map(read).transpose()?;
+    doubt_obstacles(robot, obstacles.as_ref())?;
+    Ok(Surroundings { obstacles, margin, self_collision })
 }
 
 /// The obstacles of a `Scene`, read and prepared once; `carried` are link and name of each body that the robot carries there.

@@ -4,8 +4,9 @@ use ikcore::obstacle::Scene;
 use pyo3::prelude::*;
 
 use super::GivenObstacles;
-use crate::convert::{Rows, row, rows};
+use crate::convert::{Rows, own, row};
 use crate::error::raise;
+use crate::joint_order::joint_rows;
 use crate::monitor::in_pieces;
 use crate::robot::PyRobot;
 
@@ -41,13 +42,13 @@ pub fn clearance<'py>(
     q: &Bound<'py, PyAny>,
     obstacles: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let obstacles = GivenObstacles::read(py, obstacles)?.core;
+    let obstacles = GivenObstacles::read_for(py, robot, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    match rows("joint angles", robot.core.name(), robot.core.dof(), q)? {
+    match joint_rows(&robot.core, "joint angles", q)? {
         Rows::One(q) => Ok(scene.clearance(q.as_slice()?).map_err(raise)?.into_pyobject(py)?.into_any()),
         Rows::Many(q, _) => {
             let clearances = in_pieces(py, q.as_slice()?, robot.core.dof(), ROWS, |q| scene.clearances(q))?;
-            Ok(row(py, clearances).into_any())
+            Ok(own(row(py, clearances)).into_any())
         }
     }
 }

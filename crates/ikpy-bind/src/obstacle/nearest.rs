@@ -6,9 +6,10 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use super::GivenObstacles;
-use crate::convert::{copied, vector};
+use crate::convert::copied;
 use crate::error::raise;
 use crate::hash::content_hash;
+use crate::joint_order::joint_vector;
 use crate::pickling::{self, Reduced};
 use crate::robot::PyRobot;
 
@@ -110,8 +111,8 @@ pub fn nearest(
     q: &Bound<'_, PyAny>,
     obstacles: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Option<PyNearest>> {
-    let obstacles = GivenObstacles::read(py, obstacles)?.core;
+    let obstacles = GivenObstacles::read_for(py, robot, obstacles)?.core;
     let scene = Scene::new(&robot.core, &obstacles).map_err(raise)?;
-    let found = scene.nearest_contact(&vector("joint angles", q)?).map_err(raise)?;
+    let found = scene.nearest_contact(&joint_vector(&robot.core, "joint angles", q)?).map_err(raise)?;
     Ok(found.map(PyNearest::from))
 }

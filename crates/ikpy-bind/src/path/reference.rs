@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
 
-use crate::convert::{Array, matrix3, point, row, shortened, summary, table, times};
+use crate::convert::{Array, matrix3, own, point, row, shortened, summary, table, times};
 use crate::error::{invalid, raise};
 use crate::pickling::{self, Reduced};
 use crate::signals::check_signals_at;
@@ -95,7 +95,8 @@ impl PyPath {
         let reference = self.reference(py, dt)?;
         let count = reference.len();
         let positions = (0..count).flat_map(|i| reference.position(i)).collect();
-        Ok((row(py, (0..count).map(|i| reference.time(i)).collect()), table(py, positions, &[count, 3])?))
+        let times = row(py, (0..count).map(|i| reference.time(i)).collect());
+        Ok((own(times), own(table(py, positions, &[count, 3])?)))
     }
 
     /// Returns a copy with an orientation: a rotation matrix (3, 3), or a callable of t (s) that returns one.
@@ -258,5 +259,5 @@ fn each<'py, const D: usize>(
     }
     let mut full = if single { vec![] } else { vec![times.len()] };
     full.extend(shape);
-    table(py, values, &full)
+    table(py, values, &full).map(own)
 }

@@ -8,8 +8,9 @@ use pyo3::prelude::*;
 
 use super::plan::PyPlan;
 use super::tpbso::read_method;
-use crate::convert::{array, count, rigid_matrices, shape_text, vector};
+use crate::convert::{array, count, rigid_matrices, shape_text};
 use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::GivenObstacles;
@@ -18,6 +19,7 @@ use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
 use crate::task::read_task;
+use crate::units;
 use crate::wording::said;
 
 /// Plans a motion that moves the tip along a path.
@@ -93,12 +95,14 @@ pub fn plan_along_path(
     let arm = robot.get().core.clone();
     robot.get().core.require_one_tip("plan_along_path").map_err(raise)?;
     let tip_path = read_tip_path(py, path)?;
+    let doubtful = |point| units::of_point(&arm, "path", ikcore::task::Subject::Tip(0), point);
+    units::doubt(tip_path.points().positions().iter().find_map(doubtful))?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
-    let given = GivenObstacles::read(py, obstacles)?;
+    let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
     let options = AlongPathOptions {
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
-        start: start_q.map(|q| vector("start_q", q)).transpose()?,
+        start: start_q.map(|q| joint_vector(&arm, "start_q", q)).transpose()?,
         task: read_task(task)?,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,

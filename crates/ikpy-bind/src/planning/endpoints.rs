@@ -1,16 +1,18 @@
 //! Reading of the ends of a motion.
 
 use ikcore::planning::Endpoint;
-use ikcore::task::{Target, TargetRow, Tolerance};
+use ikcore::task::{Subject, Target, TargetRow, Tolerance};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::convert::{Numbers, array, rigid_rows, shape_text, vector};
+use crate::convert::{Numbers, array, rigid_rows, shape_text};
 use crate::error::invalid;
-use crate::ik::read_target;
+use crate::ik::{read_target, read_targets};
+use crate::joint_order::{joint_array, joint_vector};
 use crate::robot::PyRobot;
-use crate::tips::{Asked, TaskArguments, ToleranceArgument, read_only};
+use crate::tips::{TaskArguments, ToleranceArgument, read_only};
+use crate::units;
 
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
@@ -26,9 +28,9 @@ pub fn read_start(
         Given::Target(target) => {
             let target = plain("start", robot, target)?;
             refuse_angles("start", &array("start", &target)?)?;
-            read_target("start", &target).map(Endpoint::from)
+            doubted("start", robot, read_target("start", &target)?).map(Endpoint::from)
         }
-        Given::Configuration(q) => vector("start_q", q).map(Endpoint::Configuration),
+        Given::Configuration(q) => joint_vector(&robot.core, "start_q", q).map(Endpoint::Configuration),
     }
 }
 
@@ -40,13 +42,13 @@ pub fn read_ends(
     task: Argument<'_, '_>,
 ) -> PyResult<Vec<Endpoint>> {
     match one_of("end", target, q)? {
-        Given::Target(target) if robot.core.tip_count() == 1 => read_targets(&plain("end", robot, target)?),
+        Given::Target(target) if robot.core.tip_count() == 1 => read_ends_of_one(robot, &plain("end", robot, target)?),
         Given::Target(several) if several.is_instance_of::<PyList>() => {
             let ends = several.try_iter()?.enumerate();
             ends.map(|(i, end)| read_tips(&format!("end[{i}]"), robot, &end?, task)).collect()
         }
         Given::Target(targets) => Ok(vec![read_tips("end", robot, targets, task)?]),
-        Given::Configuration(q) => read_configurations(q),
+        Given::Configuration(q) => read_configurations(robot, q),
     }
 }
 
@@ -66,16 +68,22 @@ pub fn plain<'py>(name: &str, robot: &PyRobot, end: &Bound<'py, PyAny>) -> PyRes
 }
 
 /// Reads one or several targets.
-fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
+fn read_ends_of_one(robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     let numbers = array("end", value)?;
     refuse_angles("end", &numbers)?;
     let rows = numbers.as_slice()?;
     match numbers.shape() {
-        [3] | [4, 4] => Ok(vec![read_target("end", value)?.into()]),
-        [k, 3] if *k > 0 => Ok(rows.as_chunks().0.iter().map(|position| Target::Position(*position).into()).collect()),
+        [3] | [4, 4] => Ok(vec![doubted("end", robot, read_target("end", value)?)?.into()]),
+        [k, 3] if *k > 0 => {
+            let positions = rows.as_chunks().0.iter().map(|position| Target::Position(*position));
+            positions.map(|target| doubted("end", robot, target).map(Endpoint::from)).collect()
+        }
         [k, 4, 4] if *k > 0 => {
             let matrices = rows.chunks_exact(16).enumerate();
-            let target = |(i, rows)| Ok(Target::from(&rigid_rows(&format!("end[{i}]"), rows)?).into());
+            let target = |(i, rows)| {
+                let target = Target::from(&rigid_rows(&format!("end[{i}]"), rows)?);
+                doubted(&format!("end[{i}]"), robot, target).map(Endpoint::from)
+            };
             matrices.map(target).collect()
         }
         shape => Err(invalid(format!(
@@ -85,9 +93,15 @@ fn read_targets(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
     }
 }
 
+/// Doubts the unit of a target of the only tip.
+fn doubted(what: &str, robot: &PyRobot, target: Target) -> PyResult<Target> {
+    units::doubt(units::of_target(&robot.core, what, Subject::Tip(0), &target))?;
+    Ok(target)
+}
+
 /// Reads one or several configurations; the core checks the number of joints.
-fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
-    let numbers = array("end_q", value)?;
+fn read_configurations(robot: &PyRobot, value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
+    let numbers = joint_array(&robot.core, "end_q", value)?;
     let rows = numbers.as_slice()?;
     match numbers.shape() {
         [_] => Ok(vec![Endpoint::Configuration(rows.to_vec())]),
@@ -101,7 +115,7 @@ fn read_configurations(value: &Bound<'_, PyAny>) -> PyResult<Vec<Endpoint>> {
 
 /// Reads the targets of several tips.
 fn read_tips(name: &str, robot: &PyRobot, target: &Bound<'_, PyAny>, task: Argument<'_, '_>) -> PyResult<Endpoint> {
-    let asked = Asked::read(name, robot, target, read_target)?;
+    let asked = read_targets(name, robot, target)?;
     let Tolerance { position, rotation } = Tolerance::default();
     let [position_tolerance, rotation_tolerance] = &[position, rotation].map(ToleranceArgument::All);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot, &asked)?;

@@ -68,7 +68,7 @@ pub struct ReadOptions {
 impl PlanArguments<'_> {
     /// Converts the arguments to options of the core.
     pub fn read(&self, py: Python<'_>, robot: &PyRobot) -> PyResult<ReadOptions> {
-        self.read_among(py, robot, GivenObstacles::read(py, self.obstacles.as_ref())?)
+        self.read_among(py, robot, GivenObstacles::read_for(py, robot, self.obstacles.as_ref())?)
     }
 
     /// Converts the arguments of a problem that may override some of `all`. Common obstacles are not read again.
@@ -84,7 +84,7 @@ impl PlanArguments<'_> {
                 let core = of_all.core.surroundings.obstacles.clone().unwrap_or_default();
                 GivenObstacles { core, tuple: of_all.obstacles.clone_ref(py) }
             }
-            (own, _) => GivenObstacles::read(py, own.as_ref())?,
+            (own, _) => GivenObstacles::read_for(py, robot, own.as_ref())?,
         };
         self.read_among(py, robot, obstacles)
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ikcore::load::{CollisionShapes, Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
+use ikcore::units;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyString};
 
@@ -13,6 +14,7 @@ use crate::convert::{optional_text, path_or_text, rigid, summary, text, vector};
 use crate::error::{invalid, raise};
 use crate::monitor::on_a_thread;
 use crate::python_calls;
+use crate::units::doubt;
 
 #[pymethods]
 impl PyRobot {
@@ -40,10 +42,13 @@ impl PyRobot {
     ///         list is refused.
     ///
     /// Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
-    /// `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
+    /// `safety_controller`. A revolute or prismatic joint of the chain needs a `<limit>`; one without lower and upper is
+    /// unlimited, and continuous if it turns. Velocity limits may be missing; zero locks the joint. Acceleration,
+    /// deceleration (the smaller of both counts) and jerk of URDF 1.2 are in `rated_limits`.
     ///
     /// Raises:
-    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
+    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, a joint without `<limit>`, or several leaves and
+    ///         no `tip`.
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision=Some("primitives"),
@@ -80,7 +85,9 @@ impl PyRobot {
             package_dirs,
             directory,
         };
-        on_a_thread(py, move || Robot::from_urdf_with(&source, &options)).map(Self::from)
+        let (robot, doubts) = on_a_thread(py, move || Robot::read_urdf(&source, &options))?;
+        doubt(doubts)?;
+        Ok(robot.into())
     }
 
     /// Makes a robot from a MuJoCo model, as compiled by MuJoCo. Joint positions equal MuJoCo's qpos. Needs the extra "sim".
@@ -93,15 +100,17 @@ impl PyRobot {
     ///     trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
     ///         anyone.
     ///
-    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples
-    /// linearly follow their master. Geoms that collide become bodies, except ellipsoids, planes and height fields,
-    /// which are listed in `unread_collision_shapes`.
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints, linear ones are
+    /// followed: couplings of joints or fixed tendons, locks, and whatever follows from these, such as a parallelogram.
+    /// Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
+    /// `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
+    /// ellipsoids, planes and height fields, which are listed in `unread_collision_shapes`.
     ///
     /// Raises:
     ///     BeetleIkError: MuJoCo is not installed.
     ///     UnknownNameError: no body or site of that name; the message lists them.
-    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or a joint coupled in
-    ///         another way.
+    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or an equality (connect,
+    ///         weld, tendon, polynomial coupling) that joints of the chain do not keep.
     #[staticmethod]
     #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives"), trusted=false),
            text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives', trusted=False)")]
@@ -116,6 +125,11 @@ impl PyRobot {
         read_collision(collision)?;
         let tip = tip.map_or(Ok(vec![]), read_tips)?;
         python_calls::robot(model.py(), "mjcf", (model, base, tip, hold, collision, trusted))
+    }
+
+    /// Doubts limits that a MuJoCo model gives in degrees by default.
+    fn _doubt_degrees(&self) -> PyResult<()> {
+        doubt(units::of_converted_limits(&self.core))
     }
 
     /// Makes a robot by its name in the package example-robot-data, if that is installed, or robot_descriptions, for
@@ -200,7 +214,11 @@ impl PyRobot {
         if let Some(tool) = tool {
             table.tool = rigid("tool", tool)?;
         }
-        Robot::from_dh(name.unwrap_or("dh"), &table).map(Self::from).map_err(raise)
+        let robot = Robot::from_dh(name.unwrap_or("dh"), &table).map_err(raise)?;
+        let angles = [("alpha", &table.alpha), ("theta", &table.theta)];
+        doubt(angles.into_iter().filter_map(|(what, angles)| units::of_dh_angles(what, angles)))?;
+        doubt(units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)))?;
+        Ok(robot.into())
     }
 
     /// Makes a planar arm of revolute joints in the x-y plane, with its base at the origin.
@@ -217,6 +235,7 @@ impl PyRobot {
         velocity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let robot = Self::from(Robot::planar(&vector("lengths", lengths)?).map_err(raise)?);
+        doubt(units::of_sizes(&robot.core))?;
         robot.with_limits(lower, upper, velocity)
     }
 

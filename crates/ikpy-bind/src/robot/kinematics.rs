@@ -7,8 +7,9 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 use super::PyRobot;
-use crate::convert::{Rows, count, pose_array, rows, table, vector};
+use crate::convert::{Rows, count, own, pose_array, table};
 use crate::error::raise;
+use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces, long_call};
 
 #[pymethods]
@@ -30,18 +31,18 @@ impl PyRobot {
         if robot.tip_count() > 1 && link.is_none() {
             return self.of_all_tips(py, q, &[4, 4], Robot::tips_fk_all).map(Bound::into_any);
         }
-        match rows("joint angles", robot.name(), robot.dof(), q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 let q = q.as_slice()?;
                 let pose = link.map_or_else(|| robot.fk(q), |link| robot.link_fk(link, q)).map_err(raise)?;
-                Ok(pose_array(py, &pose)?.into_any())
+                Ok(own(pose_array(py, &pose)?).into_any())
             }
             Rows::Many(q, m) => {
                 let poses = in_pieces(py, q.as_slice()?, robot.dof(), QUICK_ROWS, |q| match link {
                     None => robot.fk_all(q),
                     Some(link) => robot.link_fk_all(link, q),
                 })?;
-                Ok(table(py, poses, &[m, 4, 4])?.into_any())
+                Ok(own(table(py, poses, &[m, 4, 4])?).into_any())
             }
         }
     }
@@ -49,30 +50,30 @@ impl PyRobot {
     /// Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n).
     fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.core.dof();
-        match rows("joint angles", self.core.name(), n, q)? {
+        match joint_rows(&self.core, "joint angles", q)? {
             Rows::One(q) => {
                 self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
-                table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n])
+                table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n]).map(own)
             }
             Rows::Many(q, m) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.clip_all(q))?, &[m, n])
+                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.clip_all(q))?, &[m, n]).map(own)
             }
         }
     }
 
     /// Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let poses = self.core.link_poses(&vector("joint angles", q)?).map_err(raise)?;
+        let poses = self.core.link_poses(&joint_vector(&self.core, "joint angles", q)?).map_err(raise)?;
         let count = poses.len();
-        table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
+        table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4]).map(own)
     }
 
     /// Returns the poses of all links at q (n,), in the order of `all_link_names`: (links, 4, 4).
     fn all_link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let poses = self.core.all_link_poses(&vector("joint angles", q)?).map_err(raise)?;
+        let poses = self.core.all_link_poses(&joint_vector(&self.core, "joint angles", q)?).map_err(raise)?;
         let count = poses.len();
-        table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4])
+        table(py, poses.iter().flat_map(pose::rows).collect(), &[count, 4, 4]).map(own)
     }
 
     /// Returns the geometric Jacobian at the tip, (6, n) for q (n,), (m, 6, n) for q (m, n): linear rows (m per rad or
@@ -97,12 +98,12 @@ impl PyRobot {
             None => robot.jacobian_all(q),
             Some(link) => robot.link_jacobian_all(link, q),
         };
-        match rows("joint angles", robot.name(), n, q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 robot.check("joint angles", q.as_slice()?).map_err(raise)?;
-                table(py, jacobians(q.as_slice()?).map_err(raise)?, &[6, n])
+                table(py, jacobians(q.as_slice()?).map_err(raise)?, &[6, n]).map(own)
             }
-            Rows::Many(q, m) => table(py, in_pieces(py, q.as_slice()?, n, QUICK_ROWS, jacobians)?, &[m, 6, n]),
+            Rows::Many(q, m) => table(py, in_pieces(py, q.as_slice()?, n, QUICK_ROWS, jacobians)?, &[m, 6, n]).map(own),
         }
     }
 
@@ -117,7 +118,7 @@ impl PyRobot {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (m, seed) = (count("m", m)?, count("seed", seed)?);
         let drawn = long_call(py, || self.core.random_configurations(m, &mut rng::stream(seed, 0)))?;
-        table(py, drawn, &[m, self.core.dof()])
+        table(py, drawn, &[m, self.core.dof()]).map(own)
     }
 }
 
@@ -131,14 +132,14 @@ impl PyRobot {
         each: impl Fn(&Robot, &[f64]) -> ikcore::Result<Vec<f64>> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (robot, n, tips) = (&*self.core, self.core.dof(), self.core.tip_count());
-        match rows("joint angles", robot.name(), n, q)? {
+        match joint_rows(robot, "joint angles", q)? {
             Rows::One(q) => {
                 robot.check("joint angles", q.as_slice()?).map_err(raise)?;
-                table(py, each(robot, q.as_slice()?).map_err(raise)?, &[tips, shape[0], shape[1]])
+                table(py, each(robot, q.as_slice()?).map_err(raise)?, &[tips, shape[0], shape[1]]).map(own)
             }
             Rows::Many(q, m) => {
                 let all = in_pieces(py, q.as_slice()?, n, QUICK_ROWS / tips, |q| each(robot, q))?;
-                table(py, all, &[m, tips, shape[0], shape[1]])
+                table(py, all, &[m, tips, shape[0], shape[1]]).map(own)
             }
         }
     }

@@ -6,9 +6,10 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
 use super::PyRobot;
-use crate::convert::{Rows, row, rows, table, vector};
+use crate::convert::{Rows, own, row, table};
 use crate::error::raise;
 use crate::hash::content_hash;
+use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces};
 use crate::pickling::{self, Reduced};
 
@@ -81,7 +82,7 @@ impl PyRobot {
     #[pyo3(signature = (q, *, motion="pose"))]
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyAny>> {
         let motion: Motion = motion.parse().map_err(raise)?;
-        match rows("joint angles", self.core.name(), self.core.dof(), q)? {
+        match joint_rows(&self.core, "joint angles", q)? {
             Rows::One(q) => {
                 let value = manipulability(&self.core, motion, q.as_slice()?).map_err(raise)?;
                 Ok(value.into_pyobject(py)?.into_any())
@@ -89,7 +90,7 @@ impl PyRobot {
             Rows::Many(q, _) => {
                 let (robot, q) = (&*self.core, q.as_slice()?);
                 let values = in_pieces(py, q, robot.dof(), QUICK_ROWS / 4, |q| manipulability_all(robot, motion, q))?;
-                Ok(row(py, values).into_any())
+                Ok(own(row(py, values)).into_any())
             }
         }
     }
@@ -111,7 +112,7 @@ impl PyRobot {
     #[pyo3(signature = (q, *, motion="position"))]
     fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (measure, values) = self.measure_at(q, motion)?;
-        Ok(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec()))
+        Ok(own(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec())))
     }
 
     /// Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` is as in `manipulability`.
@@ -126,7 +127,7 @@ impl PyRobot {
     /// Reads the arguments of the manipulability methods.
     fn measure_at(&self, q: &Bound<'_, PyAny>, motion: &str) -> PyResult<(Manipulability, Vec<f64>)> {
         let motion: Motion = motion.parse().map_err(raise)?;
-        let q = vector("joint angles", q)?;
+        let q = joint_vector(&self.core, "joint angles", q)?;
         self.core.check("joint angles", &q).map_err(raise)?;
         Ok((Manipulability::of(&self.core, motion), q))
     }

@@ -4,18 +4,22 @@ use std::collections::BTreeMap;
 
 use ikcore::rng;
 use ikcore::robot::{BaseLimits, Joint, LinkCapsule, MobileBase};
+use ikcore::units;
 use pyo3::prelude::*;
 
 use super::PyRobot;
 use crate::convert::{count, path_or_text, point, rigid, scalar_or_vector, summary};
 use crate::error::{invalid, raise};
 use crate::obstacle::{PyObstacle, Touch, read_touch};
+use crate::units::doubt;
 
 #[pymethods]
 impl PyRobot {
     /// Returns a copy with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
     fn with_tool(&self, tool: &Bound<'_, PyAny>) -> PyResult<Self> {
-        self.core.with_tool(rigid("tool", tool)?).map(Self::from).map_err(raise)
+        let tool = rigid("tool", tool)?;
+        doubt(units::of_tool(&self.core, &tool))?;
+        self.core.with_tool(tool).map(Self::from).map_err(raise)
     }
 
     /// Returns a copy placed elsewhere: `base` (4, 4) is the pose of its base link.
@@ -39,7 +43,10 @@ impl PyRobot {
             joint.upper = upper.as_ref().map_or(joint.upper, |values| values[i]);
             joint.velocity = velocity.as_ref().map_or(joint.velocity, |values| values[i]);
         };
-        self.core.with_limits(change).map(Self::from).map_err(raise)
+        let robot = self.core.with_limits(change).map_err(raise)?;
+        let known = units::of_limits(&self.core);
+        doubt(units::of_limits(&robot).into_iter().filter(|doubt| !known.contains(doubt)))?;
+        Ok(robot.into())
     }
 
     /// Returns a copy on a mobile base, whose joints come first in `q`. Poses then refer to a new first link, "world",
@@ -83,7 +90,9 @@ impl PyRobot {
             velocity: rate("velocity", velocity)?,
             acceleration: rate("acceleration", acceleration)?,
         };
-        self.core.with_mobile_base(base, &limits).map(Self::from).map_err(raise)
+        let robot = self.core.with_mobile_base(base, &limits).map_err(raise)?;
+        doubt(units::of_limits(&robot))?;
+        Ok(robot.into())
     }
 
     /// Returns a copy with other values (rad, m) of joints beside the chain, for example
@@ -121,7 +130,9 @@ impl PyRobot {
         })?;
         let (given, touch) = (&shape.get().core, touch.unwrap_or_default());
         let touch: Vec<&str> = touch.iter().chain(given.touch()).map(String::as_str).collect();
-        self.core.with_attached(link, &given.shape, &touch, name).map(Self::from).map_err(raise)
+        let robot = self.core.with_attached(link, &given.shape, &touch, name).map_err(raise)?;
+        doubt(units::of_sizes(&robot))?;
+        Ok(robot.into())
     }
 
     /// Returns a copy that tests exactly these pairs of links against each other, each (link, link). To exclude a link:
@@ -163,7 +174,9 @@ impl PyRobot {
             (None, Some(radius)) => self.core.with_capsules_along_links(radius),
             _ => return Err(invalid("with_capsules: give either radius= or a list of (link, a, b, radius)".into())),
         };
-        robot.map(Self::from).map_err(raise)
+        let robot = robot.map_err(raise)?;
+        doubt(units::of_sizes(&robot))?;
+        Ok(robot.into())
     }
 
     /// Returns a copy with random manufacturing errors: each constant offset between two joints changes by up to `length`

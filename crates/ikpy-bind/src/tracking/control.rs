@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use super::session::in_progress;
 use super::step::PyStep;
 use super::znnbas::PyZnnbas;
-use crate::convert::{array, copied, count, counted, rigid_rows, shape_text, summary, vector};
+use crate::convert::{array, copied, count, counted, own, rigid_rows, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::solver::PyBroydenBas;
@@ -47,7 +47,7 @@ impl PyControlSession {
     /// velocity limits from the last accepted configuration.
     fn command<'py>(&self, py: Python<'py>, target: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let target = tip_pose("target", target)?;
-        Ok(copied(py, self.session().command(&target).map_err(raise)?))
+        Ok(own(copied(py, self.session().command(&target).map_err(raise)?)))
     }
 
     /// Takes the `position` (3,) (m) or the pose (4, 4) of the tip, measured at the last command; it must be a pose if the

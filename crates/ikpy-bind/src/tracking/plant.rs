@@ -9,9 +9,10 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyListMethods, PyTuple};
 
-use crate::convert::{array, count, pose_array, rigid_rows, shape_text, summary, vector};
+use crate::convert::{array, count, own, pose_array, rigid_rows, shape_text, summary};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
+use crate::joint_order::joint_vector;
 use crate::options::NewArguments;
 use crate::robot::PyRobot;
 use crate::traversal::traversed;
@@ -75,12 +76,12 @@ impl PyKinematicPlant {
     /// pose (4, 4).
     #[pyo3(name = "move")]
     fn move_to<'py>(&self, py: Python<'py>, q: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let q = vector("q", q)?;
+        let q = joint_vector(self.core.robot(), "q", q)?;
         self.core.robot().check("q", &q).map_err(raise)?;
         let mut plant = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
         let tip = plant.measure(&q).map_err(|Fault(reason)| invalid(format!("the plant {reason}")))?;
         match tip.pose() {
-            Some(pose) => Ok(pose_array(py, &pose)?.into_any()),
+            Some(pose) => Ok(own(pose_array(py, &pose)?).into_any()),
             None => Ok(PyArray1::from_slice(py, tip.position()).into_any()),
         }
     }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -41,6 +42,10 @@ pub struct PyStep {
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
+    /// Names the joints that limits of zero lock.
+    lock: Option<Arc<Message>>,
+    /// Sentence about a target whose rotation had drifted.
+    drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
     around: OnceLock<Option<Clearance>>,
 }
@@ -92,13 +97,13 @@ impl PyStep {
     }
 
     /// Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
-    /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    /// NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
         self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
-    /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    /// The nearest two bodies at `q`, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
         self.around().as_ref()?.nearest.clone().map(PyNearest::from)
@@ -111,17 +116,26 @@ impl PyStep {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?))
+        let lock = self.lock.as_deref().map(said);
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None))]
-    fn _restore(py: Python<'_>, bytes: &[u8], limits: Py<PyLimits>, tips: Option<&[u8]>) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None))]
+    fn _restore(
+        py: Python<'_>,
+        bytes: &[u8],
+        limits: Py<PyLimits>,
+        tips: Option<&[u8]>,
+        lock: Option<String>,
+        drift: Option<String>,
+    ) -> PyResult<Self> {
         let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
             from_bytes("step", bytes).map_err(raise)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
-        Ok(Self { around: OnceLock::from(around), ..step })
+        let lock = lock.map(|lock| Arc::new(lock.into()));
+        Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
 }
 
@@ -129,7 +143,18 @@ impl PyStep {
     /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
     pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
         let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self { core, q, qd, limits, elapsed, tips: TipErrors::unnamed(), among: None, around: OnceLock::new() }
+        Self {
+            core,
+            q,
+            qd,
+            limits,
+            elapsed,
+            tips: TipErrors::unnamed(),
+            among: None,
+            lock: None,
+            drift: None,
+            around: OnceLock::new(),
+        }
     }
 
     /// Adds the errors by tip.
@@ -137,9 +162,19 @@ impl PyStep {
         Self { tips, ..self }
     }
 
+    /// Adds the drift of the target's rotation to the message.
+    pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
+        Self { drift: drift.map(|drift| drift.to_string()), ..self }
+    }
+
     /// Adds the clear space of an arm, and its configuration `q`.
     pub fn among(self, space: Option<Arc<ClearSpace<'static>>>, q: Vec<f64>) -> Self {
         Self { among: space.map(|space| (space, q)), ..self }
+    }
+
+    /// Adds the joints that limits of zero lock.
+    pub fn of_locked(self, lock: Option<Arc<Message>>) -> Self {
+        Self { lock, ..self }
     }
 
     fn around(&self) -> &Option<Clearance> {
@@ -149,7 +184,15 @@ impl PyStep {
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        let message = nearest.map_or_else(|| self.core.message(), |nearest| self.core.message_near(&nearest.contact));
+        let message = match (&self.lock, nearest) {
+            (Some(lock), _) if self.core.status == Status::Capped => self.core.message_with(&**lock),
+            (_, Some(nearest)) => self.core.message_near(&nearest.contact),
+            _ => self.core.message(),
+        };
+        let message = match &self.drift {
+            Some(drift) => format!("{}; {drift}", said(&message)).into(),
+            None => message,
+        };
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;

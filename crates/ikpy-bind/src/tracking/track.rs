@@ -11,9 +11,10 @@ use pyo3::types::PyDict;
 
 use super::arguments::{TrackArguments, tick_rule};
 use super::record::{Columns, counts, record};
-use crate::convert::{row, table, vector};
+use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -25,6 +26,7 @@ use crate::robot::PyRobot;
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
+use crate::units;
 use crate::wording::said;
 
 /// The record of a track, k = steps + 1 rows: row 0 is the start at t = 0, row i the tick that ends at t_i = i dt.
@@ -34,7 +36,7 @@ pub struct PyTrackResult {
     columns: Columns,
     /// Errors by tip.
     tips: TipErrors,
-    /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
+    /// Smallest distances from obstacles and between links (k,) (m); NaN where nothing is checked.
     #[pyo3(get)]
     clearance: Py<PyArray1<f64>>,
     /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
@@ -200,7 +202,8 @@ impl PyTrackResult {
 ///     task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
-///     limits: limits on the joint motion; None: the robot's.
+///     limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
 ///     position_tolerance: error band of positions (m); for several tips also a dict.
@@ -209,7 +212,8 @@ impl PyTrackResult {
 ///         robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
 ///         or stops. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
@@ -221,7 +225,7 @@ impl PyTrackResult {
 ///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
 ///     LimitError: a start outside its limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
 ///         region; position, acceleration or jerk limits that vary in time, among obstacles.
@@ -265,10 +269,14 @@ pub fn track(
     let rule = tick_rule(solver)?;
     let asked = Asked::read("path", robot.get(), path, read_path)?;
     let references = sampled(py, &asked, dt, rule.uses_velocities())?;
+    for ((subject, _), reference) in asked.iter().zip(&references) {
+        let rows = [0, reference.len() / 2, reference.len() - 1].into_iter();
+        units::doubt(rows.filter_map(|row| units::of_point(&arm, "path", subject, &reference.position(row))).next())?;
+    }
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
-    let start = start.map(|start| vector("start", start)).transpose()?;
-    let surroundings = read_surroundings(obstacles, margin, self_collision)?;
+    let start = start.map(|start| joint_vector(&arm, "start", start)).transpose()?;
+    let surroundings = read_surroundings(robot.get(), obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());

@@ -1,12 +1,16 @@
 //! `Tracker`.
 
+use std::cell::Cell;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use ikcore::obstacle::Surroundings;
+use ikcore::robot::Robot;
 use ikcore::solver::Stopwatch;
 use ikcore::solver::Unattended;
 use ikcore::task::TargetRow;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
+use ikcore::units::UnitDoubt;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -14,9 +18,10 @@ use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
 use super::session::in_progress;
 use super::step::PyStep;
-use crate::convert::{point, vector};
+use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
-use crate::ik::read_target;
+use crate::ik::read_target_by;
+use crate::joint_order::joint_vector;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
@@ -24,6 +29,7 @@ use crate::robot::PyRobot;
 use crate::tip_keys::TipKeys;
 use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
+use crate::units;
 
 /// Tracks targets that arrive one at a time, one call per tick, otherwise like `track`.
 ///
@@ -37,7 +43,8 @@ use crate::traversal::traversed;
 ///     dt: time step (s).
 ///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
-///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
 ///     goals: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
@@ -63,6 +70,10 @@ pub struct PyTracker {
     settings: TipSettings,
     /// Keys of the last targets.
     keys: Mutex<TipKeys>,
+    /// Whether a step has said that the rotation of a target had drifted.
+    drifted: AtomicBool,
+    /// Whether a doubt about a unit was raised in a tick; there would be one in each.
+    doubted: AtomicBool,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
     /// The robot.
@@ -117,12 +128,23 @@ impl PyTracker {
         let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let mut session = Session::new(arm, &vector("start", start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
+        units::doubt(options.surroundings.obstacles.as_ref().and_then(|all| units::of_obstacles(arm, all)))?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;
         }
         let (session, keys) = (Mutex::new(session), Mutex::new(robot.get().tips.clone()));
-        Ok(Self { session, settings, keys, runs_solver, robot: robot.clone().unbind(), limits: in_force })
+        let [drifted, doubted] = [(); 2].map(|()| AtomicBool::new(false));
+        Ok(Self {
+            session,
+            settings,
+            keys,
+            drifted,
+            doubted,
+            runs_solver,
+            robot: robot.clone().unbind(),
+            limits: in_force,
+        })
     }
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
@@ -134,7 +156,9 @@ impl PyTracker {
     /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
     /// most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
     /// target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
-    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
+    /// None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged. A rotation that
+    /// has drifted, R'R by up to 0.25 from the identity, is taken as the nearest rotation, and the message of the first such
+    /// step says so.
     ///
     /// Args:
     ///     target: target of the tip, or of several tips, at the end of the tick; None: no new target.
@@ -152,7 +176,18 @@ impl PyTracker {
         velocity: Option<&Bound<'_, PyAny>>,
         stamp: Option<f64>,
     ) -> PyResult<PyStep> {
-        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read_target)).transpose()?;
+        let drift = Cell::new(None);
+        let read = |what: &str, value: &Bound<'_, PyAny>| {
+            read_target_by(what, value, |rows| {
+                let (pose, found) = drifted_rows(what, rows)?;
+                drift.set(found.or(drift.get()));
+                Ok(pose)
+            })
+        };
+        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read)).transpose()?;
+        self.doubt_once(|robot| {
+            target.as_ref()?.iter().find_map(|(subject, target)| units::of_target(robot, "target", subject, target))
+        })?;
         let velocity = velocity.map(|velocity| point("velocity", velocity)).transpose()?;
         if target.is_none() && (velocity.is_some() || stamp.is_some()) {
             return Err(invalid("velocity and stamp belong to a target; leave them out in step(None)".into()));
@@ -177,9 +212,11 @@ impl PyTracker {
             *self.keys() = keys;
         }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
-        let (space, q) = (session.space().cloned(), session.q().to_vec());
+        let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
-        Ok(PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed()).among(space, q).of_tips(tips))
+        let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
+        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
+        Ok(step.among(space, q).of_tips(tips).of_locked(lock).of_drifted_target(drift))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
@@ -206,7 +243,8 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let (q, qd, qdd) = (vector("q", q)?, read("qd", qd)?, read("qdd", qdd)?);
+        let q = joint_vector(&self.robot.get().core, "q", q)?;
+        let (qd, qdd) = (read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
 
@@ -223,6 +261,7 @@ impl PyTracker {
     #[setter]
     fn set_obstacles(&self, obstacles: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let given = obstacles.map(MovingObstacles::read).transpose()?;
+        self.doubt_once(|robot| units::of_obstacles(robot, &given.as_ref()?.shapes))?;
         let (shapes, velocities) = given.map_or((None, vec![]), |given| (Some(given.shapes), given.velocities));
         self.session().set_obstacles(shapes, velocities).map_err(raise)
     }
@@ -234,6 +273,16 @@ impl PyTracker {
 }
 
 impl PyTracker {
+    /// Warns of the first doubt of all ticks.
+    fn doubt_once(&self, find: impl FnOnce(&Robot) -> Option<UnitDoubt>) -> PyResult<()> {
+        if self.doubted.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let found = find(&self.robot.get().core);
+        self.doubted.store(found.is_some(), Ordering::Relaxed);
+        units::doubt(found)
+    }
+
     /// Locks the keys of the last targets.
     fn keys(&self) -> std::sync::MutexGuard<'_, TipKeys> {
         self.keys.lock().unwrap_or_else(std::sync::PoisonError::into_inner)

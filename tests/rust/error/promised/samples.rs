@@ -91,7 +91,7 @@ pub fn along(points: &[[f64; 3]]) -> Result<Plan> {
 }
 
 pub fn session() -> Session {
-    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions::default()).unwrap()
+    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { limits: jumping(&two()), ..Default::default() }).unwrap()
 }
 
 pub fn eased_session() -> Session {
@@ -258,7 +258,13 @@ pub fn posed() -> ControlSession {
 
 pub fn turning() -> Session {
     let task = Task::new(TaskKind::Orientation, None, None, None).unwrap();
-    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { task: Some(task), ..TrackOptions::default() }).unwrap()
+    Session::new(
+        &two(),
+        &[0.5, 0.5],
+        0.1,
+        &TrackOptions { task: Some(task), limits: jumping(&two()), ..TrackOptions::default() },
+    )
+    .unwrap()
 }
 
 pub fn stamped(stamp: f64) -> Arrival {

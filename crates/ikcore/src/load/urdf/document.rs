@@ -8,6 +8,7 @@ use super::link_capsules::{self, LinkCapsules};
 use super::{visuals, xml};
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::robot::Visual;
+use crate::units::{self, UnitDoubt};
 
 /// Checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
 pub(super) struct Document {
@@ -38,6 +39,10 @@ pub(super) struct UrdfJoint {
     pub(super) range: (f64, f64),
     /// Velocity limit (rad/s, m/s).
     pub(super) velocity: f64,
+    /// Rated acceleration and jerk (rad/s^2, m/s^2; rad/s^3, m/s^3): of URDF 1.2, infinite where they are missing.
+    pub(super) rated: [f64; 2],
+    /// Whether the joint has an element `limit`.
+    pub(super) has_limit: bool,
     pub(super) mimic: Option<Mimic>,
 }
 
@@ -113,6 +118,14 @@ impl Document {
         self.joint_numbers.get(name).copied()
     }
 
+    /// Doubts the angles at which joints are placed.
+    pub(super) fn doubt(&self) -> Option<UnitDoubt> {
+        let of = |joint: &UrdfJoint| {
+            units::of_rpy_in_file(&format!("rpy of the origin of joint '{}'", shortened(&joint.name)), joint.rpy)
+        };
+        self.joints.iter().filter(|joint| joint.rpy.iter().any(|angle| angle.abs() > units::MANY_TURNS)).find_map(of)
+    }
+
     /// Creates an error located at a joint.
     pub(super) fn error_at(&self, joint: usize, problem: String) -> Error {
         Error::Urdf { line: self.joint_lines.get(joint).copied(), problem: problem.into() }
@@ -144,9 +157,24 @@ fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
             (lower, upper) => (lower.unwrap_or(0.0), upper.unwrap_or(0.0)),
         },
         velocity: number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY),
+        rated: rated(joint, &owner)?,
+        has_limit: xml::children(joint, "limit").next().is_some(),
         mimic: mimic(joint, &owner)?,
         name: name.into(),
     })
+}
+
+/// Returns the rated acceleration and jerk. A motion reversed is as good, so that the smaller of acceleration and deceleration holds
+/// for both.
+fn rated(joint: Node, owner: &str) -> Result<[f64; 2]> {
+    let rate = |attribute: &str| match number(joint, "limit", attribute, owner)? {
+        Some(value) if value < 0.0 => {
+            let problem = format!("limit {attribute} of {owner} is {value}: a limit cannot be negative");
+            Err(xml::error_at(joint, problem))
+        }
+        value => Ok(value.unwrap_or(f64::INFINITY)),
+    };
+    Ok([rate("acceleration")?.min(rate("deceleration")?), rate("jerk")?])
 }
 
 fn joint_kind(joint: Node, owner: &str) -> Result<UrdfKind> {

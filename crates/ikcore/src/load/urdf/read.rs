@@ -12,6 +12,7 @@ use super::tree::Tree;
 use super::visuals;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
+use crate::units::{self, UnitDoubt};
 
 /// Options for loading a URDF.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,9 +48,11 @@ impl Robot {
     /// [held](Robot::held_joints) at zero or at the limit nearest to zero; mimic joints beside the chain follow their
     /// masters. Floating, planar and spherical joints beside the chain stay in their origin.
     ///
-    /// A revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for both would
-    /// lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is unlimited; an
-    /// explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
+    /// A revolute or prismatic joint of the chain needs a `<limit>`, as URDF specifies. With neither `lower` nor `upper` it is
+    /// unlimited (URDF's default of zero for both would lock it), a revolute one continuous; if one is given, the other is zero,
+    /// as URDF specifies. Without `velocity` the speed is unlimited; an explicit zero locks the joint. `acceleration`,
+    /// `deceleration` and `jerk` of URDF 1.2 are rated limits ([`Limits::rated`](crate::limits::Limits::rated)); of acceleration
+    /// and deceleration the smaller one counts. Soft limits (`<safety_controller>`) are ignored.
     ///
     /// Collision shapes of all links become enclosing capsules ([`Robot::bodies`]): exact for spheres, with protruding caps
     /// for cylinders and boxes. Meshes are read only with [`CollisionShapes::Fit`] or [`CollisionShapes::Hulls`];
@@ -71,6 +74,15 @@ impl Robot {
     /// # Errors
     /// Errors of [`from_urdf`](Self::from_urdf), [`with_held`](Self::with_held) and [`with_srdf`](Self::with_srdf).
     pub fn from_urdf_with(path_or_xml: &str, options: &UrdfOptions) -> Result<Self> {
+        Self::read_urdf(path_or_xml, options).map(|(robot, _)| robot)
+    }
+
+    /// Reads a robot as [`from_urdf_with`](Self::from_urdf_with) does, and returns with it what looks like degrees or millimetres
+    /// in the file.
+    ///
+    /// # Errors
+    /// Errors of [`from_urdf_with`](Self::from_urdf_with).
+    pub fn read_urdf(path_or_xml: &str, options: &UrdfOptions) -> Result<(Self, Vec<UnitDoubt>)> {
         let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
         let tree = Tree::new(&document)?;
         let base = match &options.base {
@@ -91,10 +103,13 @@ impl Robot {
             [] => robot,
             hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
         };
-        match &options.srdf {
-            None => Ok(robot),
-            Some(srdf) => robot.with_srdf(srdf),
-        }
+        let robot = match &options.srdf {
+            None => robot,
+            Some(srdf) => robot.with_srdf(srdf)?,
+        };
+        let doubts = units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)).chain(document.doubt());
+        let doubts = doubts.collect();
+        Ok((robot, doubts))
     }
 }
 
@@ -108,7 +123,7 @@ pub(super) fn read(path: &str) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 
-fn read_urdf(path: &str) -> Result<String> {
+pub(super) fn read_urdf(path: &str) -> Result<String> {
     let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);
