@@ -3276,6 +3276,7 @@ def time_optimal(
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
+    tolerance: float | ArrayLike | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
@@ -3295,15 +3296,20 @@ def time_optimal(
             no longer improves.
         start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
         joint_names: n names; None: "q1", "q2" and so on.
+        tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
+            parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
+            is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+
+    Equal consecutive rows, as a recording has at rest, are one waypoint.
 
     Returns:
-        A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
-        quintic segments that meet the path at their ends.
+        A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
+        points. With jerk limits it consists of quintic segments that meet the path at their ends.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+        InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
 
     For example:
 

@@ -66,6 +66,10 @@ SPOILED = {
         "a configuration of the curve misses the target",
     ),
     "paths_followed": ("plan = Changed(plan, accuracy=-1.0)", "the plan is farther from the path than it says"),
+    "starts_as_read": (
+        "tracked = [q + 0.3 * (i == 5) for i, q in enumerate(tracked)]",
+        "a tick exceeds the velocity limit on the way inside",
+    ),
     "plants": ("found = Changed(found, q=10.0 * found.q)", "the velocity is beyond its limit"),
     "poses": (
         "poses = poses + 1e-9",

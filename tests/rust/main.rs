@@ -99,6 +99,7 @@ mod task {
 mod timing {
     mod retime;
     mod time_optimal;
+    mod tolerance;
 }
 mod tpbso {
     mod wang_2019;

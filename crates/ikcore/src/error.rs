@@ -92,6 +92,20 @@ pub enum Error {
         /// All tips, separated by commas.
         known: String,
     },
+    /// A value was given for a joint that q does not contain.
+    #[error("robot '{robot}' has no joint '{name}' in q{problem}; its joints: {joints}; {remedy}")]
+    UnknownJoint {
+        /// The robot's name.
+        robot: String,
+        /// The given name.
+        name: String,
+        /// Text ` (did you mean 'x'?)`, the reason why the joint is not in q, or empty.
+        problem: String,
+        /// All joints of q, separated by commas.
+        joints: String,
+        /// How to pass over values of other joints.
+        remedy: Message,
+    },
     /// A call that takes robots with one tip got one with several.
     #[error("{call} takes robots with one tip; this one has {tips}: {remedy}")]
     SeveralTips {
@@ -169,10 +183,10 @@ pub enum Error {
         time: Option<f64>,
     },
     /// A configuration outside the position limits.
-    #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
+    #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}] {excess}")]
     OutsideLimits {
         /// Name of the argument, for example "start".
-        what: String,
+        what: Message,
         /// The joint's name.
         joint: String,
         /// Value of the joint (rad or m).
@@ -181,6 +195,8 @@ pub enum Error {
         lower: f64,
         /// Upper limit of the joint (rad or m).
         upper: f64,
+        /// Excess over the nearer limit, and what brings the joint inside.
+        excess: Message,
     },
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
@@ -419,9 +435,11 @@ impl Error {
             Self::OutOfRange { what, requirement, .. } => vec![what, requirement],
             Self::SeveralTips { call, remedy, .. } => vec![call, remedy],
             Self::UnsupportedLimit { method, remedy, .. } => vec![method, remedy],
-            Self::NoCapsules { remedy, .. } | Self::InCollision { remedy, .. } | Self::NoPace { remedy, .. } => {
-                vec![remedy]
-            }
+            Self::OutsideLimits { what, excess, .. } => vec![what, excess],
+            Self::NoCapsules { remedy, .. }
+            | Self::InCollision { remedy, .. }
+            | Self::NoPace { remedy, .. }
+            | Self::UnknownJoint { remedy, .. } => vec![remedy],
             Self::InvalidRobot { problem, .. }
             | Self::InvalidMeasurement { problem }
             | Self::Urdf { problem, .. }

@@ -155,7 +155,7 @@ impl PySolution {
 ///         dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
 ///         "right_tool") gives the pose of the second tip in the frame of the first.
 ///     task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
-///     start: configuration (n,). For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+///     start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit. For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
 ///         search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
 ///         solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
 ///         target.
@@ -188,7 +188,7 @@ impl PySolution {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
-///     LimitError: a start outside the limits.
+///     LimitError: limits that contradict each other.
 ///
 /// For example:
 ///

@@ -30,6 +30,7 @@ mod signals;
 mod solve_all;
 mod solve_arguments;
 mod solver;
+mod start_gate;
 mod task;
 mod tip_keys;
 mod tips;

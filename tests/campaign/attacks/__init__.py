@@ -17,6 +17,7 @@ from . import (
     searching,
     several,
     solving,
+    starts,
     streams,
     tracking,
     units,
@@ -24,8 +25,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, own_points, readers),
-    *(xacro_files, described, calibration, calls, command_line, units),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, own_points),
+    *(readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -19,7 +19,7 @@ use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, s
 use ikcore::calibration::{CalibrationOptions, Measured, PinholeCamera, calibrate};
 use ikcore::ik::{AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_tips};
 use ikcore::interrupt::{checkpoint, interruptible};
-use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack};
 use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};
 use ikcore::manipulability::{Motion, manipulability, manipulability_all};
 use ikcore::map::{MapGrid, MapLayout, MapOptions};
@@ -33,6 +33,7 @@ use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference
 use ikcore::planning::{
     AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
     StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
+    time_optimal_within,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;

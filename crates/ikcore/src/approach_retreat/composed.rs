@@ -11,7 +11,7 @@ use crate::free_path;
 use crate::message::Setting;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
-    END_RESERVE, EndName, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, configuration_at, joined,
+    END_RESERVE, EndName, EndTurns, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, configuration_at, joined,
     least_clearance, no_usable_end, refuse_collision,
 };
 use crate::robot::Robot;
@@ -114,6 +114,8 @@ impl<'a> Pieces<'a> {
             approach: None,
             retreat: None,
             free_start: false,
+            // The pieces join at given configurations.
+            end_turns: EndTurns::AsGiven,
             // The lines end at configurations.
             task: self.options.task.filter(|_| self.options.approach.is_none()),
             stop: self.options.stop.map(|stop| Stop { max_time: stop.max_time.map(left), ..stop }),

@@ -59,11 +59,13 @@ pub(super) fn plan(
     if open.len() < FEW_PAIRS && !given {
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
     }
+    open.extend(search.other_ways(&open));
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let most = most_kept(space, &open);
+    let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =
-        TreeSearch::new(scene, limits, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
+        TreeSearch::new(scene, ranges, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),

@@ -237,24 +237,4 @@ impl Limits {
         let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
         Err(Error::WrongLength { what: what.into(), expected, got: self.joints.len() })
     }
-
-    /// Checks that `q` is within the position limits at time `t` (s); `what` names it in the error.
-    ///
-    /// # Errors
-    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
-    pub fn require_inside(&self, what: &str, t: f64, q: &[f64]) -> Result<()> {
-        for (i, joint) in self.joints.iter().enumerate() {
-            let (lower, upper) = (self.lower[i].at(t), self.upper[i].at(t));
-            if !(lower <= q[i] && q[i] <= upper) {
-                return Err(Error::OutsideLimits {
-                    what: what.into(),
-                    joint: joint.clone(),
-                    value: q[i],
-                    lower,
-                    upper,
-                });
-            }
-        }
-        Ok(())
-    }
 }

@@ -34,6 +34,14 @@ pub enum Setting {
     StartVelocity,
     /// Configuration at the start.
     StartConfiguration,
+    /// Values of other joints passed over.
+    IgnoreExtra,
+    /// Distance beyond a limit in which a start is taken.
+    StartSlack,
+    /// Whole turns taken off, which brings a joint inside its limits.
+    Wrap,
+    /// Joint moved to its limit, which changes the pose.
+    Clip,
     /// New timing of a plan.
     Retime,
     /// Distance to keep.
@@ -89,6 +97,10 @@ impl fmt::Display for Setting {
             Self::FreeStart => "free_start",
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",
+            Self::IgnoreExtra => "ignoring extra names",
+            Self::StartSlack => "start slack",
+            Self::Wrap => "whole turns taken off bring it inside",
+            Self::Clip => "moving it to the limit changes the pose",
             Self::Retime => "a new timing of the plan",
             Self::Margin => "a margin",
             Self::Surroundings => "obstacles (perhaps none) or self-collision",

@@ -20,6 +20,8 @@
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
 //! | `serialization` | robots as bytes |
+//! | `named_values` | joint values by name |
+//! | `wrapped` | the same posture at other whole turns |
 
 mod arms;
 mod attached;
@@ -36,6 +38,7 @@ mod manufacturing_errors;
 mod measured_geometry;
 mod mobile_base;
 mod model;
+mod named_values;
 mod off_chain;
 mod pair_rule;
 mod pair_sampling;
@@ -47,6 +50,7 @@ mod tip_chain;
 mod tips;
 mod upright_axis;
 mod visual;
+mod wrapped;
 
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
@@ -55,6 +59,7 @@ pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
+pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;

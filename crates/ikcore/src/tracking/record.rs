@@ -8,7 +8,7 @@ use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
 use crate::error::Result;
 use crate::kinematics::ReachShortfall;
-use crate::limits::{Field, LimitAt, Limits, ROUNDING, TickBox};
+use crate::limits::{Field, JointOutside, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::message::{Message, Setting, message};
 use crate::obstacle::Measured;
@@ -53,6 +53,8 @@ pub struct Record {
     pub limit_margin: f64,
     /// Limits in force.
     pub limits: Limits,
+    /// Joints that began outside their position limits, and were led inside.
+    pub start_outside: Vec<JointOutside>,
     /// The error band.
     pub criterion: Criterion,
     /// Distance by which the path is provably out of reach, and its time (s). `None` if the track succeeded or nothing is
@@ -145,6 +147,7 @@ impl Record {
             worst_violation: None,
             limit_margin: f64::INFINITY,
             limits,
+            start_outside: vec![],
             criterion,
             out_of_reach: None,
             status: Status::Lost,
@@ -217,9 +220,19 @@ impl Record {
         for j in 0..q.len() {
             let step = q[j] - self.q[self.q.len() - self.dof + j];
             let too_fast = step.abs() - velocity[j] * self.dt;
-            let outside = larger(floor[j] - q[j], q[j] - ceiling[j]);
+            let [floor, ceiling] = self.led_range(j, [floor[j], ceiling[j]]);
+            let outside = larger(floor - q[j], q[j] - ceiling);
             let excess = larger(too_fast, outside).max(self.too_sudden(j, step, [from, to]));
             self.note_excess(excess, j, q[j], to);
+        }
+    }
+
+    /// Position limits of joint `j` in a tick; those of a joint that began outside reach to its start.
+    fn led_range(&self, j: usize, [floor, ceiling]: [f64; 2]) -> [f64; 2] {
+        let start = self.q[j];
+        match self.start_outside.iter().any(|outside| outside.joint == self.limits.joint_name(j)) {
+            true => [floor.min(start), ceiling.max(start)],
+            false => [floor, ceiling],
         }
     }
 
@@ -344,7 +357,7 @@ impl Record {
                 message![format!("the path is {beyond} at t = {} s: ", time(*when)), Status::OutOfReach.advice()]
             }
         };
-        self.message_with(advice)
+        message![self.message_with(advice), JointOutside::in_words(&self.start_outside, "begins")]
     }
 
     /// Whether obstacles or other links held the arm back.

@@ -13,7 +13,7 @@ use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
-use crate::limits::Limits;
+use crate::limits::{JointOutside, Limits};
 use crate::math::vector::write_within;
 use crate::message::Message;
 use crate::objective::{Bounds, Point, Score};
@@ -91,6 +91,11 @@ impl Session {
     /// Names the joints that cannot move because of limits of zero, with the remedy; `None` without such limits.
     pub fn lock(&self) -> Option<&Arc<Message>> {
         self.arm.lock.as_ref()
+    }
+
+    /// Joints that began outside their position limits; empty once all are inside.
+    pub fn start_outside(&self) -> &[JointOutside] {
+        self.arm.outside.as_ref().map_or(&[], |outside| &outside.joints)
     }
 
     /// Time step (s).
@@ -193,9 +198,13 @@ impl Session {
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let mut found = if self.stopping || self.arm.targets.last().is_empty() {
+            self.arm.allow_braking();
             self.brake()
         } else {
-            self.run_rule(sampled_ago, monitor)
+            // The rule leads a joint that is outside its limits inside; the filter may hold it where it is.
+            let found = self.run_rule(sampled_ago, monitor);
+            self.arm.allow_braking();
+            found
         };
         let held = !found.interrupted && !self.stopping && self.filter(&mut found);
         self.keep_in_region(&mut found);

@@ -66,6 +66,7 @@ pub fn track_tips(
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
     let limits = session.limits().clone();
     let mut record = Record::new(start.len(), first.len(), limits, options.limit_at, criterion, first.dt());
+    record.start_outside = session.start_outside().to_vec();
     let beginning = session.begin(asked.arrival(0))?;
     asked.push(&session, &beginning, &mut record);
     if options.ease {

@@ -3,7 +3,7 @@
 use super::rule::TickRule;
 use super::target_filter::TargetFilter;
 use crate::error::{Error, Result};
-use crate::limits::{LimitAt, Limits};
+use crate::limits::{LimitAt, Limits, StartSlack};
 use crate::message::Setting;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
@@ -22,6 +22,8 @@ pub struct TrackOptions {
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
+    /// Distance beyond a position limit in which a start is taken and led inside.
+    pub start_slack: StartSlack,
     /// Time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
     /// Filter of the targets. `None` means none.

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::limits::JointOutside;
 use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
@@ -38,6 +39,8 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// Joints that began outside their limits, if any still was.
+    outside: Vec<JointOutside>,
     /// Errors by tip.
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
@@ -114,7 +117,7 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.outside);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
         pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
@@ -131,9 +134,10 @@ impl PyStep {
         lock: Option<String>,
         drift: Option<String>,
     ) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
+        let (core, q, qd, elapsed, around, outside): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
             from_bytes("step", bytes).map_err(raise)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
+        let tips = TipErrors::restored(tips)?;
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside);
         let lock = lock.map(|lock| Arc::new(lock.into()));
         Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
@@ -149,12 +153,18 @@ impl PyStep {
             qd,
             limits,
             elapsed,
+            outside: vec![],
             tips: TipErrors::unnamed(),
             among: None,
             lock: None,
             drift: None,
             around: OnceLock::new(),
         }
+    }
+
+    /// Adds the joints that began outside their limits.
+    pub fn led_from(self, outside: Vec<JointOutside>) -> Self {
+        Self { outside, ..self }
     }
 
     /// Adds the errors by tip.
@@ -184,11 +194,12 @@ impl PyStep {
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        let message = match (&self.lock, nearest) {
-            (Some(lock), _) if self.core.status == Status::Capped => self.core.message_with(&**lock),
-            (_, Some(nearest)) => self.core.message_near(&nearest.contact),
-            _ => self.core.message(),
+        let advice = match (&self.lock, nearest) {
+            (Some(lock), _) if self.core.status == Status::Capped => Message::clone(lock),
+            (_, Some(nearest)) => self.core.advice_near(&nearest.contact),
+            _ => self.core.status.advice(),
         };
+        let message = self.core.message_with(advice, &self.outside);
         let message = match &self.drift {
             Some(drift) => format!("{}; {drift}", said(&message)).into(),
             None => message,

@@ -89,8 +89,16 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Robot::with_tool" NotFinite: panda.with_tool(lost()), "tool must be finite, but entry (0, 3) is NaN";
         "Robot::with_capsules_along_links" InvalidRobot: nameless().with_capsules_along_links(0.1), "robot 'nameless': no link is named between moving elements 1 and 2, so that none can carry a capsule: name one there";
         "ChainBuilder::build" NotFinite: adrift(), "fixed transform must be finite, but entry (0, 3) is NaN";
+        "Robot::wrap" WrongLength: panda.wrap(&[0.0], None), "q of robot 'panda': expected 7 joints, got 1";
+        "Robot::wrap" NotFinite: panda.wrap(&[NAN; 7], None), "q must be finite, but joint 'panda_joint1' is NaN";
+        "Robot::wrap" OutsideLimits: panda.wrap(&[0.0; 7], None), "q: joint 'panda_joint4' at 0 is outside its limits [-3.0718, -0.0698] by 0.06980 rad: no whole turn brings it inside, the nearest is 0.06980 rad beyond; moving it to the limit changes the pose";
+        "Robot::wrap_all" WrongLength: panda.wrap_all(&[0.0; 8], None), "joint angles of robot 'panda': expected rows of 7 joints, got 8";
+        "Robot::order_of" UnknownJoint: panda.order_of(&["panda_joint".to_owned()], false), "robot 'panda' has no joint 'panda_joint' in q (did you mean 'panda_joint1'?); its joints: panda_joint1, panda_joint2, panda_joint3, panda_joint4, panda_joint5, panda_joint6, panda_joint7; ignoring extra names leaves out values of other joints";
+        "Robot::order_of" Contradiction: Robot::planar(&[1.0]).unwrap().order_of(&[], false), "names: joint 'joint_1' of robot 'planar1' missing; given: ";
+        "Robot::q_from" WrongLength: Robot::planar(&[1.0]).unwrap().q_from(&["joint_1".to_owned(), "x".to_owned()], &[0.0; 3], false, true), "values: expected 2 numbers, one per name, got 3";
+        "Robot::q_from" NotFinite: Robot::planar(&[1.0]).unwrap().q_from(&["joint_1".to_owned()], &[NAN], false, false), "values must be finite, but joint 'joint_1' is NaN";
         "Robot::with_held" NotFinite: held().with_held([("side", NAN)]), "held joints must be finite, but joint 'side' is NaN";
-        "Robot::with_held" OutsideLimits: held().with_held([("side", 2.0)]), "hold: joint 'side' at 2 is outside its limits [-1, 1]";
+        "Robot::with_held" OutsideLimits: held().with_held([("side", 2.0)]), "hold: joint 'side' at 2 is outside its limits [-1, 1] by 1.000 rad: move it inside";
         "Robot::with_mobile_base" OutOfRange: panda.with_mobile_base(MobileBase::Planar, &on_wheels(f64::INFINITY)), "lower limit of joint 'base_x' must be finite: configurations are drawn from the range, got -inf";
         "Robot::with_mobile_base" InvalidRobot: panda.with_mobile_base(MobileBase::Planar, &on_wheels(1.0)).unwrap().with_mobile_base(MobileBase::Planar, &on_wheels(1.0)), "robot 'panda': two joints are named 'base_x'";
         "Mesh::cover" OutOfRange: huge_cover(), "radius of the capsule must be positive and finite, got inf";
