@@ -628,6 +628,8 @@ class Status(IntEnum):
     - `HELD_IN_REGION`: The region of the task keeps the tip from the target; the tip is in the region, as near as possible.
     - `IN_COLLISION`: Nearer than the margin to an obstacle, or with two links nearer to each other; the target may be reached.
     - `HELD_BY_OBSTACLE`: A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.
+    - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
+    - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     """
 
     SOLVED = 0
@@ -646,6 +648,8 @@ class Status(IntEnum):
     HELD_IN_REGION = 13
     IN_COLLISION = 14
     HELD_BY_OBSTACLE = 15
+    ROTATION_GIVEN_UP = 16
+    POSITION_GIVEN_UP = 17
 
 @final
 class APPS:
@@ -1356,6 +1360,10 @@ class Pose(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        first: "position" or "orientation", the part that is met exactly where the whole pose cannot be met; the other
+            comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
+            "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
+            or a region.
     """
 
     def __new__(
@@ -1365,7 +1373,13 @@ class Pose(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        first: str | None = None,
     ) -> Pose: ...
+    @property
+    def first(self) -> str | None:
+        """The part that is met exactly where the whole pose cannot be met: "position" or "orientation"; None: "position" for an arm
+        with fewer than six joints.
+        """
 
 @final
 class Position(Task):
@@ -1443,7 +1457,7 @@ class Goal:
     """
 
     @property
-    def weight(self) -> float:
+    def weight(self) -> float | _Array:
         """Weight relative to other goals."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
@@ -1456,7 +1470,7 @@ class Posture(Goal):
         weight: weight relative to other goals.
     """
 
-    def __new__(cls, posture: ArrayLike, *, weight: float = 1.0) -> Posture: ...
+    def __new__(cls, posture: ArrayLike, *, weight: ArrayLike = 1.0) -> Posture: ...
     @property
     def posture(self) -> _Array:
         """The posture (n,) (rad, m)."""
@@ -2421,6 +2435,7 @@ def track(
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
+    recover: bool = True,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -2456,6 +2471,8 @@ def track(
             at its "start".
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
+        recover: whether an arm that comes no nearer to the path, at a joint limit or in a singular configuration, goes to a
+            configuration on it if one is known, as in `Tracker`.
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
@@ -2642,6 +2659,9 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+        recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
+            configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
+            a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
 
     For example:
 
@@ -2671,6 +2691,7 @@ class Tracker:
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
         timeout: float | None = None,
+        recover: bool = True,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot

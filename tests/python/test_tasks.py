@@ -169,7 +169,7 @@ def test_no_solution_comes_with_the_best_miss() -> None:
     assert (len(found), found.success, found.q.shape) == (0, False, (0, 6))
     assert found.status == bik.Status.OUT_OF_REACH
     assert found.miss is not None
-    assert found.message.startswith("no solution; best miss: as near as possible, ")
+    assert found.message.startswith("no solution; best miss: out of reach, the nearest found is ")
     assert "(out of reach by at least " in found.message
 
 

@@ -7,7 +7,7 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{row, summary, vector};
+use crate::convert::{row, scalar_or_vector, summary, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::NewArguments;
@@ -31,16 +31,20 @@ pub struct PyGoal {
 
 #[pymethods]
 impl PyGoal {
-    /// Weight relative to other goals.
+    /// Weight relative to other goals; of a `Posture` with a weight for each joint (n,).
     #[getter]
-    fn weight(&self) -> f64 {
-        self.core.weight()
+    fn weight<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match &self.core {
+            Goal::WeightedPosture { weights, .. } => Ok(row(py, weights.clone()).into_any()),
+            other => Ok(other.weight().into_pyobject(py)?.into_any()),
+        }
     }
 
     fn __repr__(&self) -> String {
         let weight = self.core.weight();
         match &self.core {
             Goal::Posture { posture, .. } => format!("goals.Posture({posture:?}, weight={weight:?})"),
+            Goal::WeightedPosture { posture, weights } => format!("goals.Posture({posture:?}, weight={weights:?})"),
             Goal::Centring { .. } => format!("goals.Centring(weight={weight:?})"),
             Goal::Manipulability { motion, tip: None, .. } => {
                 format!("goals.Manipulability(motion='{motion}', weight={weight:?})")
@@ -61,9 +65,11 @@ impl PyGoal {
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let options = PyDict::new(py);
-        options.set_item("weight", self.core.weight())?;
+        options.set_item("weight", self.weight(py)?)?;
         let arguments = match &self.core {
-            Goal::Posture { posture, .. } => PyTuple::new(py, [row(py, posture.clone())])?,
+            Goal::Posture { posture, .. } | Goal::WeightedPosture { posture, .. } => {
+                PyTuple::new(py, [row(py, posture.clone())])?
+            }
             Goal::Centring { .. } => PyTuple::empty(py),
             Goal::Manipulability { motion, tip, .. } => {
                 options.set_item("motion", motion.name())?;
@@ -94,20 +100,28 @@ where
     Ok(PyClassInitializer::from(PyGoal { core }).add_subclass(class))
 }
 
-/// Stays close to a posture: minimises |q - posture|^2.
+/// Stays close to a posture: minimises weight * |q - posture|^2 or, with a weight for each joint, the sum of
+/// (weight * (q - posture))^2.
 ///
 /// Args:
 ///     posture: (n,) (rad, m).
-///     weight: weight relative to other goals.
+///     weight: weight relative to other goals; or the cost of moving each joint (n,): joints of a large weight move little
+///         where others can do it, such as a base that is to stay while the arm moves.
 #[pyclass(name = "Posture", module = "beetle_ik.goals", extends = PyGoal, frozen)]
 pub struct PyPosture;
 
 #[pymethods]
 impl PyPosture {
     #[new]
-    #[pyo3(signature = (posture, *, weight=1.0))]
-    fn new(posture: &Bound<'_, PyAny>, weight: f64) -> PyResult<PyClassInitializer<Self>> {
-        made(Goal::Posture { posture: vector("posture", posture)?, weight }, Self)
+    #[pyo3(signature = (posture, *, weight=None), text_signature = "(posture, *, weight=1.0)")]
+    fn new(posture: &Bound<'_, PyAny>, weight: Option<&Bound<'_, PyAny>>) -> PyResult<PyClassInitializer<Self>> {
+        let posture = vector("posture", posture)?;
+        let goal = match weight.map(|weight| scalar_or_vector("weight", weight)).transpose()? {
+            None => Goal::Posture { posture, weight: 1.0 },
+            Some((weights, true)) => Goal::Posture { posture, weight: weights[0] },
+            Some((weights, false)) => Goal::WeightedPosture { posture, weights },
+        };
+        made(goal, Self)
     }
 
     /// The posture (n,) (rad, m).
@@ -115,7 +129,7 @@ impl PyPosture {
     fn posture<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();
         match &self_.as_super().core {
-            Goal::Posture { posture, .. } => Some(row(py, posture.clone())),
+            Goal::Posture { posture, .. } | Goal::WeightedPosture { posture, .. } => Some(row(py, posture.clone())),
             _ => None,
         }
     }

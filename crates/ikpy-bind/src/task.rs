@@ -1,7 +1,7 @@
 //! `tasks`: the parts of a target that count.
 
 use ikcore::math::{Pose, pose};
-use ikcore::task::{Region, Task, TaskKind};
+use ikcore::task::{First, Region, Task, TaskKind};
 use numpy::{PyArray1, PyArray2};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -72,6 +72,7 @@ impl PyTask {
             self.core.tolerance().map(|tolerance| format!("tolerance={}", list_text(&tolerance))),
             self.core.tool.as_ref().map(matrix),
             self.core.region.as_ref().map(region),
+            self.core.first.map(|first| format!("first='{first}'")),
         ];
         let given: Vec<_> = options.into_iter().flatten().collect();
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
@@ -90,6 +91,9 @@ impl PyTask {
         options.set_item("tolerance", self.tolerance(py))?;
         options.set_item("tool", self.tool(py)?)?;
         options.set_item("region", self.region(py)?)?;
+        if let Some(first) = self.core.first {
+            options.set_item("first", first.name())?;
+        }
         Ok((PyTuple::empty(py), options))
     }
 }
@@ -98,28 +102,29 @@ impl PyTask {
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Makes an instance of a task's class, which adds no fields to kind, weights, tolerance, tool and region.
-fn made<C>(
-    kind: TaskKind,
-    [weights, tolerance, tool, region]: [Argument<'_, '_>; 4],
-    class: C,
-) -> PyResult<PyClassInitializer<C>>
+fn instance<C>(kind: TaskKind, options: [Argument<'_, '_>; 4], class: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyTask>,
 {
+    let core = made(kind, options)?;
+    Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
+}
+
+/// Makes a task.
+fn made(kind: TaskKind, [weights, tolerance, tool, region]: [Argument<'_, '_>; 4]) -> PyResult<Task> {
     // Reads a number as a vector of one entry: the core's error then says how many entries it needs.
     let entries = |what, value: Argument<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
     let weights = entries("weights", weights)?.map(|(weights, _)| weights);
     let tolerance = entries("tolerance", tolerance)?.map(|(tolerance, _)| tolerance);
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
     let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
-    let core = match region {
-        None => core,
+    match region {
+        None => Ok(core),
         Some(region) => {
             let [lower, upper] = corners("region", region)?;
-            Region::new(lower, upper).and_then(|region| core.within(region)).map_err(raise)?
+            Region::new(lower, upper).and_then(|region| core.within(region)).map_err(raise)
         }
-    };
-    Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
+    }
 }
 
 /// Defines the class of a task without further options.
@@ -142,20 +147,51 @@ macro_rules! task {
                 tool: Argument<'_, '_>,
                 region: Argument<'_, '_>,
             ) -> PyResult<PyClassInitializer<Self>> {
-                made($kind, [weights, tolerance, tool, region], Self)
+                instance($kind, [weights, tolerance, tool, region], Self)
             }
         }
     };
 }
 
-task! {
-    /// The whole pose.
-    ///
-    /// Args:
-    ///     weights: (6,), for x, y, z and the three components of the rotation vector, along the axes of the target; 0
-    ///         leaves a component free.
-    ///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
-    PyPose, "Pose", TaskKind::Pose
+/// The whole pose.
+///
+/// Args:
+///     weights: (6,), for x, y, z and the three components of the rotation vector, along the axes of the target; 0
+///         leaves a component free.
+///     tolerance: (6,) (m, rad), largest error of each component, instead of the tolerances of the call.
+///     tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
+///     region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
+///         infinite on open sides. See `Task`.
+///     first: "position" or "orientation", the part that is met exactly where the whole pose cannot be met; the other
+///         comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
+///         "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
+///         or a region.
+#[pyclass(name = "Pose", module = "beetle_ik.tasks", extends = PyTask, frozen)]
+pub struct PyPose;
+
+#[pymethods]
+impl PyPose {
+    #[new]
+    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None, first=None))]
+    fn new(
+        weights: Argument<'_, '_>,
+        tolerance: Argument<'_, '_>,
+        tool: Argument<'_, '_>,
+        region: Argument<'_, '_>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] first: Option<&str>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let first: Option<First> = first.map(str::parse).transpose().map_err(raise)?;
+        let task = made(TaskKind::Pose, [weights, tolerance, tool, region])?;
+        let core = first.map_or(Ok(task), |first| task.with_first(first)).map_err(raise)?;
+        Ok(PyClassInitializer::from(PyTask { core }).add_subclass(Self))
+    }
+
+    /// The part that is met exactly where the whole pose cannot be met: "position" or "orientation"; None: "position" for an arm
+    /// with fewer than six joints.
+    #[getter]
+    fn first(self_: PyRef<'_, Self>) -> Option<&'static str> {
+        self_.as_super().core.first.map(First::name)
+    }
 }
 
 task! {
@@ -201,7 +237,7 @@ impl PyPointing {
         region: Argument<'_, '_>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        made(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], Self)
+        instance(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], Self)
     }
 
     /// The axis in the frame of the tip (3,).

@@ -12,6 +12,7 @@ pub fn spelt(setting: &Setting) -> String {
     let words = match setting {
         Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
         Setting::Method(name) => return format!("method=\"{name}\""),
+        Setting::First(part) => return format!("task=tasks.Pose(first=\"{part}\")"),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
         Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),
         Setting::Budget => "budget in stop=Stop(...)",
@@ -22,6 +23,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::AllTurns => "turns=True",
         Setting::RaiseInvalid => "use on_invalid=\"raise\"",
         Setting::Ease => "ease=True",
+        Setting::Recover => "recover=True",
         Setting::FreeStart => "free_start=True",
         Setting::StartVelocity => "start_qd",
         Setting::StartConfiguration => "start_q",

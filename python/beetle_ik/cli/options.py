@@ -88,6 +88,13 @@ Seed = Annotated[int, typer.Option(help="Seed of all random draws: the same seed
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
 
 
+class FirstPart(StrEnum):
+    """Parts of a pose that may come first."""
+
+    POSITION = "position"
+    ORIENTATION = "orientation"
+
+
 class SolverName(StrEnum):
     """Solvers by their names on the command line."""
 

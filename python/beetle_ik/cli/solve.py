@@ -5,11 +5,12 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import InvalidInputError, Robot, Scene, Solution, SolutionSet, Stop, pose, solve_all
+from .. import InvalidInputError, Robot, Scene, Solution, SolutionSet, Status, Stop, pose, solve_all, tasks
 from .. import solve as solve_target
 from .options import (
     AsJson,
     BaseLink,
+    FirstPart,
     LinkRadius,
     Margin,
     RobotName,
@@ -38,6 +39,12 @@ def solve(
     target: Annotated[
         list[str] | None,
         typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),
+    ] = None,
+    first: Annotated[
+        FirstPart | None,
+        typer.Option(
+            help="Part of a pose to meet exactly where the whole cannot be met; the other as near as it allows."
+        ),
     ] = None,
     start: Start = None,
     solver: Annotated[
@@ -72,13 +79,16 @@ def solve(
         "stop": None if max_evaluations is None else Stop(max_evaluations=max_evaluations),
         "seed": seed,
     }
+    if first is not None:
+        options["task"] = tasks.Pose(first=first.value)
     if every:
         found = solve_all(arm, wanted, **options)
         _show_all(arm, found, as_json)
         raise typer.Exit(0 if found.success else 1)
     solution = solve_target(arm, wanted, **options)
     _show(arm, solution, as_json)
-    raise typer.Exit(0 if solution.success else 1)
+    given_up = solution.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)
+    raise typer.Exit(0 if solution.success or (first is not None and given_up) else 1)
 
 
 def _wanted(position: str | None, rpy: str | None, targets: list[str] | None) -> Any:

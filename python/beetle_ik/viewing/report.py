@@ -28,6 +28,8 @@ _WORDS = {
     Status.IN_COLLISION: "in collision",
     Status.HELD_BY_OBSTACLE: "held by an obstacle",
     Status.OUT_OF_REACH: "out of reach",
+    Status.ROTATION_GIVEN_UP: "position reached",
+    Status.POSITION_GIVEN_UP: "rotation reached",
 }
 
 

@@ -122,6 +122,57 @@ class OutOfReach(Attack):
         return 1
 
 
+class PlaceFirst(Attack):
+    name = "place_first"
+    promise = "An arm of few joints comes to a place that it has, and no configuration there is nearer in orientation"
+    page = "solving"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """A hard turn is of round numbers, and its configuration at limits and at zero."""
+        joints = arms.easy_arm(random, int(random.integers(3, 6)))
+        arms.put(joints, random, hard)
+        vector = (
+            random.choice(np.array([0.0, 0.5, -0.5, 1.0, 1e-9, 1e-5]) * np.pi, 3)
+            if hard
+            else random.normal(0.0, 0.7, 3)
+        )
+        return {"joints": joints, "turn": arms.triple(vector), "starts": int(random.integers(2**31))}
+
+    def program(self, case: Case) -> str:
+        return (
+            f"{arms.written(case['joints'])}target = np.array({turned(case).tolist()})\n"
+            "solution = bik.solve(robot, target)"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        solution, target = left["solution"], turned(case)
+        check_solution(case, solution, target, rotation=True)
+        if solution.position_error > TOLERANCE:
+            raise BrokenError("the arm has the place, and is not there", solution.message)
+        if solution.status not in (bik.Status.SOLVED, bik.Status.ROTATION_GIVEN_UP):
+            raise BrokenError("the place is met, and the status does not say so", solution.message)
+        lower, upper = (np.clip(bound, -TURN, TURN) for bound in arms.bounds(case["joints"]))
+        starts = np.random.default_rng(case["starts"]).uniform(lower, upper, (200, len(lower)))
+        q = inside(case["joints"], arms.descended(case["joints"], target, starts, rotation=False))
+        away, angle = arms.pose_error(arms.kinematics(case["joints"], q)[0], target)
+        nearer = (away < 0.1 * TOLERANCE) & (angle < solution.rotation_error - 1e-3)
+        if nearer.any():
+            raise BrokenError("a configuration at the place is nearer in orientation", q[nearer][0].tolist())
+        return 1
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        refuse_only_locked(case, error)
+
+
+def turned(case: Case) -> np.ndarray:
+    """The pose of the arm at its first configuration, turned by a rotation vector."""
+    pose, vector = wanted(case), np.array(case["turn"])
+    angle = np.linalg.norm(vector)
+    if angle > 0.0:
+        pose[:3, :3] = arms.turn(vector / angle, np.array([angle]))[0] @ pose[:3, :3]
+    return pose
+
+
 def inside(joints: list[arms.Joint], q: np.ndarray) -> np.ndarray:
     """Those of the configurations (m, n) that are inside the limits, after whole turns."""
     lower, upper = arms.bounds(joints)
@@ -131,4 +182,4 @@ def inside(joints: list[arms.Joint], q: np.ndarray) -> np.ndarray:
     return q[((q >= lower) & (q <= upper)).all(axis=1)]
 
 
-ATTACKS = [Solved(), OutOfReach()]
+ATTACKS = [Solved(), OutOfReach(), PlaceFirst()]

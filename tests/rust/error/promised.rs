@@ -32,8 +32,7 @@ use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
-    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
-    time_optimal_within,
+    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal, time_optimal_within,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;
@@ -45,7 +44,7 @@ use ikcore::solver::{
     RestartRule, Schedule, StepSize, Stop, Unattended,
 };
 use ikcore::stored;
-use ikcore::task::{Components, Criterion, Goal, NamedTask, Region, Subject, Target, Task, TaskKind, Tolerance};
+use ikcore::task::{Components, Criterion, First, Goal, NamedTask, Region, Subject, Target, Task, TaskKind, Tolerance};
 use ikcore::tracking::{
     Antenna, Arrival, ControlSession, Controller, Fault, KinematicPlant, LowPass, ModelFreeOptions, Plant, Session,
     TargetFilter, TickRule, TipPaths, TipPose, TrackOptions, Znnbas, track, track_model_free, track_tips,

@@ -170,7 +170,7 @@ fn limit_keeps_the_nearest_and_a_miss_is_returned() {
     assert!(found.solutions.is_empty() && found.complete, "{}", found.message());
     assert!(found.message().starts_with("no solution (out of reach by at least 2.057 m): move"), "{}", found.message());
     let miss = nearest_miss(&robot, &far, &options, &mut Unattended).unwrap();
-    assert!(miss.message().starts_with("as near as possible, "), "{}", miss.message());
+    assert!(miss.message().starts_with("out of reach, the nearest found is "), "{}", miss.message());
     let zero = AllOptions { limit: Some(0), ..options.clone() };
     assert_eq!(message(solve_all(&robot, &far, &zero, &mut Unattended)), "limit must be at least 1, got 0");
     let negative = AllOptions { separation: Some(-1.0), ..options };
@@ -221,7 +221,7 @@ fn a_target_out_of_reach_is_approached_and_told() {
     assert!((solution.error.position - 0.21).abs() < 0.01 * 0.21, "{}", solution.message());
     let end = ": move or turn the target into reach, or move the base";
     let message = solution.message();
-    assert!(message.starts_with("as near as possible, 0.21") && message.ends_with(end), "{message}");
+    assert!(message.starts_with("out of reach, the nearest found is 0.21") && message.ends_with(end), "{message}");
     assert!(message.contains(" m away (out of reach by at least 0.2100 m"), "{message}");
     assert!(solution.evaluations < 2000, "{}", solution.evaluations);
 }

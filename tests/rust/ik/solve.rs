@@ -96,7 +96,10 @@ fn a_target_out_of_reach_is_approached_and_said_to_be() {
     assert!((shortfall..1.01 * shortfall).contains(&distance), "{:?}", solution.error);
     let advice = "move or turn the target into reach, or move the base";
     let why = format!("out of reach by at least {shortfall:.4} m");
-    assert_eq!(solution.message(), format!("as near as possible, {distance:.4} m away ({why}): {advice}"));
+    assert_eq!(
+        solution.message(),
+        format!("out of reach, the nearest found is {distance:.4} m away ({why}): {advice}")
+    );
 }
 
 #[test]
@@ -109,7 +112,7 @@ fn a_target_off_the_plane_of_a_planar_arm_is_said_to_be() {
         let solution = solved(robot, &Target::Position(target), &SolveOptions::default());
         let why = "out of reach by at least 0.2500 m, 0.2500 m off the plane that the tip moves in";
         let advice = "move or turn the target into reach, or move the base";
-        assert_eq!(solution.message(), format!("as near as possible, 0.2500 m away ({why}): {advice}"));
+        assert_eq!(solution.message(), format!("out of reach, the nearest found is 0.2500 m away ({why}): {advice}"));
         assert!(solution.evaluations < 1000, "{}", solution.evaluations);
     }
     let solution = solved(&planar, &Target::Position([0.0, 6.0, 0.75]), &SolveOptions::default());

@@ -201,7 +201,8 @@ fn rests_between_waypoints_have_no_length() {
     let moving = [0.0, 0.0, 1.0, 0.5, 0.0, 1.0];
     for ends in [SplineEnds::Natural, SplineEnds::NotAKnot, SplineEnds::Clamped] {
         assert_eq!(spline(2, &rested, ends), spline(2, &moving, ends));
-        let given = |waypoints: &[f64], knots: &[f64]| JointPath::spline(names(2), waypoints, Some(knots), ends).unwrap();
+        let given =
+            |waypoints: &[f64], knots: &[f64]| JointPath::spline(names(2), waypoints, Some(knots), ends).unwrap();
         // The intervals that move last 1 and 2; the others are rests.
         let timed = given(&rested, &[5.0, 6.0, 7.0, 8.0, 9.0, 11.0, 12.0]);
         assert_eq!(timed, given(&moving, &[5.0, 6.0, 8.0]));
@@ -390,7 +391,8 @@ proptest! {
 fn where_all_joints_reverse_the_path_has_no_corner() {
     // Slopes vanish there but for rounding, which is all that the sides can differ by.
     let limits =
-        limits(&[(Field::Velocity, vec![1.0]), (Field::Acceleration, vec![5.0]), (Field::Jerk, vec![50.0])], 1).unwrap();
+        limits(&[(Field::Velocity, vec![1.0]), (Field::Acceleration, vec![5.0]), (Field::Jerk, vec![50.0])], 1)
+            .unwrap();
     for step in [0.1, 0.3, 1e-3, 7.0] {
         for rise in 1..40 {
             let rows: Vec<f64> = (0..=rise).chain((0..rise).rev()).map(|i| step * f64::from(i) + 0.2).collect();

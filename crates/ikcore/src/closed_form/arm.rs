@@ -186,13 +186,13 @@ fn scale_of(motion: &Transmission) -> f64 {
     motion.turn_scale + motion.slide_scale
 }
 
-fn drives_of(chain: &Chain) -> Drives {
+pub(super) fn drives_of(chain: &Chain) -> Drives {
     let driven = chain.motions[..chain.moving].iter().filter(|motion| scale_of(motion) != 0.0);
     Drives::new(driven.map(|motion| (motion.joint, scale_of(motion))))
 }
 
 /// Returns the axes of a chain at q = 0. Stages that no joint moves become part of the fixed transforms.
-fn axes_of<const N: usize>(chain: &Chain) -> AxisChain<N> {
+pub(super) fn axes_of<const N: usize>(chain: &Chain) -> AxisChain<N> {
     let mut at = Frame::IDENTITY;
     let mut joints = [JointAxis::sliding([0.0, 0.0, 1.0]); N];
     let mut axis = 0;

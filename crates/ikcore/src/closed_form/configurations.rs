@@ -44,10 +44,10 @@ impl Drives {
         }
     }
 
-    /// Returns the limits of seven axes, given joint limits `lower` and `upper` (n,).
+    /// Returns the limits of up to seven axes, given joint limits `lower` and `upper` (n,); those beyond the last axis are zero.
     pub fn of_axes(&self, lower: &[f64], upper: &[f64]) -> [[f64; 2]; MOST_JOINTS] {
         std::array::from_fn(|axis| {
-            let (joint, scale) = self.axes[axis];
+            let Some(&(joint, scale)) = self.axes.get(axis) else { return [0.0; 2] };
             let ends = [scale * lower[joint], scale * upper[joint]];
             [ends[0].min(ends[1]), ends[0].max(ends[1])]
         })

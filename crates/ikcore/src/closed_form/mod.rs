@@ -6,6 +6,7 @@
 //! fixing one joint (`given_joint`), or are solved for a given arm angle (`arm_angle`); `pose_family` solves for many
 //! parameter values at once, and `parameter_arcs`, `arm_angle_limits` and `limit_proof` bound the values that the limits
 //! allow. Arms of five joints (`five_joints`) become six by adding a virtual joint; `planar` covers planar arms and SCARAs.
+//! `position_arm` scans the configurations of an arm with few joints at a position.
 //! The methods reduce to canonical subproblems (`subproblem`) and to zeros of trigonometric polynomials (`trigonometric`),
 //! and yield candidates as cosines and sines; `verify` keeps those confirmed by forward kinematics. `arm` extracts the axes
 //! from a robot's chain and converts axis values to joint values.
@@ -33,6 +34,7 @@ mod parameter_arcs;
 mod planar;
 mod pose_family;
 mod position;
+mod position_arm;
 mod redundant;
 #[cfg(test)]
 mod seven_joint_arms;
@@ -49,9 +51,10 @@ mod wrist;
 pub(crate) use angle_range::MOVED_BY_POLISHING;
 pub(crate) use arm::{ClosedFormArm, NoClosedForm};
 pub(crate) use arm_branches::ArmBranches;
-pub(crate) use branches::{BranchError, Doubt, MOST as MOST_CONFIGURATIONS, MOST_JOINTS};
+pub(crate) use branches::{BranchFit, Doubt, MOST as MOST_CONFIGURATIONS, MOST_JOINTS};
 pub(crate) use configurations::ArmConfigurations;
 pub(crate) use parameter_arcs::ParameterArcs;
 pub(crate) use pose_family::PoseFamily;
+pub(crate) use position_arm::{PositionArm, SEEDS, Seed};
 pub(crate) use redundant::FamilyLimits;
 pub(crate) use verify::VERIFIED;

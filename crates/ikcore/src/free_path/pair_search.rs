@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::free_path::least_displacement;
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::Limits;
+use crate::message::{Setting, message};
 use crate::objective::Point;
 use crate::plan::{Cost, Deadline, EndName, EndTurns, Endpoint, Improvement, Plan, PointToPointOptions, no_usable_end};
 use crate::rng::{self, LazyRng};
@@ -232,13 +233,23 @@ impl<'a> PairSearch<'a> {
         };
         let solution = self.solve(target, start, monitor)?;
         match solution.status {
-            Status::Solved => Ok(Some(solution.q)),
+            _ if self.takes(solution.status) => Ok(Some(solution.q)),
+            Status::RotationGivenUp if attempt == 0 => {
+                let problem = message![solution.message(), ", or give ", Setting::First("position"), " to end there"];
+                Err(Error::Unreachable { what: name.of_target(), problem })
+            }
             _ if attempt == 0 => {
                 let problem = format!("the nearest configuration found stays {} away", solution.error);
                 Err(Error::Unreachable { what: name.of_target(), problem: problem.into() })
             }
             _ => Ok(None),
         }
+    }
+
+    /// Whether an end with this status is taken: one that gives up a part does so only by the caller's own order.
+    fn takes(&self, status: Status) -> bool {
+        let is_ordered = self.task.is_some_and(|task| task.first.is_some());
+        status == Status::Solved || is_ordered && matches!(status, Status::RotationGivenUp | Status::PositionGivenUp)
     }
 
     fn solve(&mut self, target: &Target, start: Option<Vec<f64>>, monitor: &mut dyn Monitor) -> Result<Solution> {
@@ -265,7 +276,7 @@ impl<'a> PairSearch<'a> {
         for (target, q) in free.into_iter().zip([&mut moved.start, &mut moved.end]) {
             let Some(target) = target else { continue };
             match self.solve(target, Some(q.to_vec()), monitor) {
-                Ok(solution) if solution.status == Status::Solved => *q = solution.q,
+                Ok(solution) if self.takes(solution.status) => *q = solution.q,
                 _ => return pair,
             }
         }

@@ -10,10 +10,13 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
-use crate::task::{Aims, Assessment, Criterion, Goals, TipError, Tolerance};
+use crate::task::{Aims, Assessment, Criterion, Goals, Target, TipError, Tolerance};
 
 /// Number of starts of the approach to a target out of reach.
 pub(super) const APPROACHES: usize = 8;
+
+/// Evaluation budget of a search that another follows.
+const BRIEF: usize = 2000;
 
 /// Evaluation budget of a descent beyond the tolerances.
 const REFINEMENT: usize = 200;
@@ -74,6 +77,32 @@ impl<'m, 'p> Attempt<'m, 'p> {
         }
         let (status, q) = self.search(bounds, x0, self.budget.reserve());
         self.finish(&descent, status, q)
+    }
+
+    /// Searches for a whole pose of which one part comes first: briefly, since another search follows a miss.
+    pub fn solve_briefly_from(&mut self, x0: &[f64]) -> Solution {
+        let bounds = self.context.bounds();
+        if self.problem.reach_shortfall(bounds).is_some() {
+            return self.explained(Status::OutOfReach, Point::from_slice(x0));
+        }
+        let reserve = self.budget.left().saturating_sub(BRIEF);
+        let (status, q) = self.search(bounds, x0, reserve);
+        self.explained(status, q)
+    }
+
+    /// Searches once more after a miss at `q`, for a configuration within the tolerances instead of the exact target.
+    #[cold]
+    pub fn solved_within_tolerance(&mut self, targets: &[Target], q: &[f64]) -> Option<Solution> {
+        let tasks = self.context.tasks_beyond_tolerance()?;
+        let mut problem = Problem::of_configuration(self.context.robot(), Aims { tasks: &tasks, targets }, None);
+        let objective: &mut dyn Differentiable = &mut problem;
+        let rest = self.budget.rest(self.budget.left().saturating_sub(BRIEF));
+        let mut evaluator = Evaluator::new(objective, self.context.bounds(), rest, self.rng, self.monitor);
+        let status = self.context.solver().run(&mut evaluator, q);
+        self.budget.add(&evaluator);
+        let found = Point::from_slice(&evaluator.best().x);
+        let is_clear = self.context.space().is_none_or(|space| space.holds(&found));
+        (status == Status::Solved && is_clear).then(|| self.solution(Status::Solved, found))
     }
 
     /// Runs the solver from `x0` within `bounds`, leaving `reserve` evaluations.

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use super::checked_tasks::{asked_tasks, reduce};
 use super::preference::Preference;
+use super::ranked::given_up;
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
@@ -16,8 +17,8 @@ use crate::objective::Bounds;
 use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
-use crate::solver::{AnySolver, Stopwatch};
-use crate::task::{Aims, CheckedTask, Goals, Target, TargetRow};
+use crate::solver::{AnySolver, Status, Stopwatch};
+use crate::task::{Aims, CheckedTask, First, Goals, SquaredError, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -74,6 +75,10 @@ impl<'a> SolveContext<'a> {
         if with_tool.is_some() {
             tasks[0].leave_tool();
         }
+        // Tolerances by component are what a search aims at; those of a call only decide, unless the exact target is missed.
+        for task in tasks.iter_mut().filter(|task| task.criterion.components.is_some() && task.criterion.has_band()) {
+            task.criterion = task.criterion.beyond_tolerance();
+        }
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
         Ok(Self { robot, with_tool, options, tasks, goals, bounds, central: OnceLock::new(), space })
     }
@@ -120,6 +125,21 @@ impl<'a> SolveContext<'a> {
         self.goals.is_empty() && self.asks_for_pose(target)
     }
 
+    /// Part of a pose that comes first where the whole cannot be met; `None` where both are balanced, or a solver is named.
+    pub(super) fn comes_first(&self, target: &Target) -> Option<First> {
+        let [task] = &self.tasks[..] else { return None };
+        if self.options.whole_only {
+            return None;
+        }
+        let dof = if self.options.solver.is_none() { self.robot.dof() } else { usize::MAX };
+        if self.robot.tip_count() == 1 { task.comes_first(target, dof) } else { None }
+    }
+
+    /// Status at an error beyond the tolerances, if the part that comes first is met.
+    pub(super) fn given_up(&self, target: &Target, error: &SquaredError) -> Option<Status> {
+        given_up(&self.tasks[0], target, self.robot.dof(), error)
+    }
+
     /// Preference among several solutions.
     pub(super) fn preference(&self, start: Option<&[f64]>) -> Cow<'_, Preference> {
         match start {
@@ -141,6 +161,29 @@ impl<'a> SolveContext<'a> {
     pub(super) fn problem<'p>(&'p self, targets: &'p [Target]) -> Problem<'p> {
         let penalty = if self.solver().needs_values_alone() { self.space() } else { None };
         Problem::of_configuration(self.robot(), Aims { tasks: &self.tasks, targets }, penalty)
+    }
+
+    /// Tasks whose errors count beyond their tolerances, if any of them has a tolerance that is not aimed at already.
+    pub(super) fn tasks_beyond_tolerance(&self) -> Option<SmallVec<[CheckedTask; 1]>> {
+        let is_new = |task: &CheckedTask| task.criterion.has_band() && !task.criterion.beyond;
+        let aimed = |task: &CheckedTask| {
+            let mut task = task.clone();
+            task.criterion = if is_new(&task) { task.criterion.beyond_tolerance() } else { task.criterion };
+            task
+        };
+        self.tasks.iter().any(is_new).then(|| self.tasks.iter().map(aimed).collect())
+    }
+
+    /// Whether the only target is a pose whose components have tolerances and equal weights, and no solver is named.
+    pub(super) fn asks_for_band_of_pose(&self, target: &Target) -> bool {
+        let criterion = &self.tasks[0].criterion;
+        let plain =
+            criterion.components.is_some_and(|components| components.weights.iter().all(|weight| *weight == 1.0));
+        matches!(target, Target::Pose(_))
+            && criterion.beyond
+            && plain
+            && criterion.region.is_none()
+            && self.options.solver.is_none()
     }
 
     /// Validates the targets `wanted`, and returns the parts that their tasks use.

@@ -5,6 +5,7 @@ use super::attempt::Attempt;
 use super::first_of_family::FamilySearch;
 use super::out_of_reach::{is_wide, obstruction, unreachable_result};
 use super::preference::Miss;
+use super::ranked::ranked_at_once;
 use super::solution::Solution;
 use crate::closed_form::ArmConfigurations;
 use crate::math::Frame;
@@ -54,6 +55,7 @@ fn of_branches(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]
     context.robot().likely_branches(pose, &mut likely);
     match attempt.preferred(&preference, &mut likely) {
         Ok(solution) => Some(solution),
+        Err(_) if let Some(solution) = ranked_at_once(attempt, start) => Some(solution),
         Err(Miss::Far) if likely.is_all && !is_wide(attempt) => {
             let obstruction = obstruction(attempt, Some(likely.len()));
             let from = match start {
@@ -76,6 +78,9 @@ fn after_trial(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<S
     let (status, q) = attempt.search(attempt.context.bounds(), &x0, reserve);
     if status != Status::BudgetSpent || attempt.budget.is_spent() {
         return Some(attempt.explained(status, q));
+    }
+    if let Some(solution) = ranked_at_once(attempt, start) {
+        return Some(solution);
     }
     nearest_of_all_branches(attempt, &attempt.context.preference(start), start)
 }

@@ -12,6 +12,7 @@ use crate::obstacle::{ClearSpace, Clearance, Measured, Surroundings, clear_in_wo
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
+use crate::wording::number;
 
 /// Best configuration found, with the report on its search, whose fields are read like those of the solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -120,12 +121,13 @@ impl SolveReport {
             return message!["not solved: ", status.advice()];
         }
         let ended = match status {
+            Status::RotationGivenUp | Status::PositionGivenUp => return self.given_up(),
             Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
             Status::InCollision => {
                 return message![format!("reached to {error}, but {obstruction}: "), self.clear_advice()];
             }
             Status::Improved => return format!("below the requested value, {error} away").into(),
-            Status::OutOfReach => "as near as possible,",
+            Status::OutOfReach => "out of reach, the nearest found is",
             Status::BelowThreshold => "error_threshold met,",
             Status::HeldInRegion => "as near as its region allows,",
             Status::OutsideLimits => "reached only outside the limits; inside them",
@@ -136,6 +138,20 @@ impl SolveReport {
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
         message![format!("{ended} {error} away{why}: "), status.advice()]
+    }
+
+    /// Sentence on a pose of which one part was met and the other given up.
+    fn given_up(&self) -> Message {
+        let Self { error, obstruction, status, .. } = self;
+        let (position, rotation) = (number(error.position), number(error.rotation));
+        let parts = match status {
+            Status::PositionGivenUp => {
+                format!("rotation met to {rotation} rad, position given up: the nearest found is {position} m away")
+            }
+            _ => format!("position met to {position} m, rotation given up: the nearest found is {rotation} rad away"),
+        };
+        let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
+        message![format!("{parts}{why}{}: ", self.kept_clear()), status.advice()]
     }
 
     /// Advice for a solution in collision.

@@ -7,14 +7,20 @@ use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
 use super::nearest::nearest_solution;
+use super::ranked::{ranked_at_once, ranked_solution};
 use super::solution::Solution;
 use super::solve_options::{Prefer, SolveOptions};
 use super::whole_turns::bring_near;
+use crate::closed_form::ArmConfigurations;
 use crate::error::Result;
+use crate::math::Frame;
 use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
+
+/// Number of joints that a pose needs.
+const POSE: usize = 6;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
@@ -70,19 +76,46 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
     let budget = Budget::new(context.options().stop, query.stopwatch);
     let mut attempt = Attempt { context, problem: &mut problem, rng: &mut rng, monitor, budget };
     let mut solution = match (context.options().prefer, query.start) {
+        (prefer, start)
+            if (prefer != Prefer::Any || context.space().is_some())
+                && let Some(found) = without_whole_pose(&mut attempt, start) =>
+        {
+            found
+        }
         (_, start) if let Some(space) = context.space() => clear_solution(&mut attempt, space, start),
         (Prefer::Nearest, Some(start)) => nearest_solution(&mut attempt, start),
         (Prefer::Best, start) => best_solution(&mut attempt, start),
         (_, start) => first_solution(&mut attempt, start),
     };
+    if is_missed(solution.status)
+        && solution.status != Status::OutOfReach
+        && let Some(found) = attempt.solved_within_tolerance(query.targets, &solution.q)
+    {
+        solution = found;
+    }
+    if is_missed(solution.status) {
+        solution = ranked_solution(&mut attempt, solution, query.start);
+    }
     attempt.mark_held_in_region(&mut solution);
     solution
+}
+
+/// Whether a search ended without the whole target, nor with the part of it that comes first.
+fn is_missed(status: Status) -> bool {
+    matches!(status, Status::OutOfReach | Status::Stalled | Status::BudgetSpent)
+}
+
+/// Returns the solution of a pose that cannot be met as a whole, if that is known at once.
+fn without_whole_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
+    ranked_at_once(attempt, start).filter(|found| found.status != Status::Solved)
 }
 
 /// Returns the first solution found; with goals it is moved along its self-motion.
 fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let context = attempt.context;
-    let mut solution = by_closed_form(attempt, start).unwrap_or_else(|| searched_solution(attempt, start));
+    let at_once = by_closed_form(attempt, start).or_else(|| in_band_of_pose(attempt, start));
+    let at_once = at_once.or_else(|| ranked_at_once(attempt, start));
+    let mut solution = at_once.unwrap_or_else(|| searched_solution(attempt, start));
     if solution.status != Status::Solved || context.goals().is_empty() {
         return solution;
     }
@@ -93,8 +126,49 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     attempt.solution(Status::Solved, solution.q)
 }
 
+/// Returns a configuration within the tolerances of a pose: a branch of the pose itself, or the end of one descent. A descent from
+/// the caller's start comes before the branches.
+fn in_band_of_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
+    let (target @ Target::Pose(pose), _) = attempt.problem.only_target()? else { return None };
+    if !attempt.context.asks_for_band_of_pose(target) {
+        return None;
+    }
+    let branch = |attempt: &mut Attempt<'_, '_>| branch_in_band(attempt, pose, start);
+    match start {
+        Some(start) => descended(attempt, start).or_else(|| branch(attempt)),
+        None => branch(attempt).or_else(|| {
+            let x0 = attempt.first_start(None);
+            descended(attempt, &x0)
+        }),
+    }
+}
+
+/// Returns the end of one descent from `x0`, if it is within the tolerances.
+fn descended(attempt: &mut Attempt<'_, '_>, x0: &[f64]) -> Option<Solution> {
+    match attempt.search_once(x0) {
+        (Status::Solved, q) => Some(attempt.explained(Status::Solved, q)),
+        _ => None,
+    }
+}
+
+/// Returns the preferred branch of `pose`, for an arm with as many joints as a pose needs.
+fn branch_in_band(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]>) -> Option<Solution> {
+    let context = attempt.context;
+    let robot = context.robot();
+    if robot.dof() < POSE || robot.solves_at_once() != Some(true) || robot.family(pose).is_some() {
+        return None;
+    }
+    let mut likely = ArmConfigurations::none();
+    robot.likely_branches(pose, &mut likely);
+    let q = context.preference(start).choose(&mut likely).ok()?;
+    attempt.solved_at(q)
+}
+
 /// Searches for a solution from the first start.
 fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let x0 = attempt.first_start(start);
-    attempt.solve_from(&x0)
+    match attempt.problem.only_target() {
+        Some((target, _)) if attempt.context.comes_first(target).is_some() => attempt.solve_briefly_from(&x0),
+        _ => attempt.solve_from(&x0),
+    }
 }

@@ -47,6 +47,8 @@ pub struct SolveOptions {
     /// Whether to defer the nearest two bodies of a solution to [`Solution::find_nearest`](super::Solution::find_nearest):
     /// finding them takes about as long as the solve.
     pub nearest_later: bool,
+    /// Whether only whole solutions count: a miss is not brought nearer, nor one part of a pose met without the other.
+    pub whole_only: bool,
     /// Budgets of the search.
     pub stop: Stop,
     /// Seed of the random draws; the same seed gives the same bits. Most targets are solved without a random draw, and

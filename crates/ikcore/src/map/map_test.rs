@@ -75,10 +75,11 @@ impl MapRobots {
             task: options.task,
             surroundings: options.surroundings.clone(),
             stop: Stop { max_evaluations: options.evaluations, ..Stop::default() },
+            whole_only: true,
             ..SolveOptions::default()
         };
         let stop = Stop { max_evaluations: DESCENT, ..Stop::default() };
-        let brief = SolveOptions { task: options.task, stop, ..SolveOptions::default() };
+        let brief = SolveOptions { task: options.task, stop, whole_only: true, ..SolveOptions::default() };
         Ok(Self { own: robot.clone(), turning, each, brief })
     }
 }

@@ -12,6 +12,7 @@
 //! | `columns` | columns of Jacobians |
 //! | `gram`, `ldl`, `banded`, `singular_values` | small linear systems, and banded ones |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
+//! | `ranked_step` | step for two objectives, one before the other |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `cubic_bspline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
@@ -36,6 +37,7 @@ pub(crate) mod logarithm;
 pub mod one_joint;
 pub mod polynomial;
 pub mod pose;
+pub(crate) mod ranked_step;
 pub(crate) mod real;
 pub(crate) mod row_step;
 pub(crate) mod sampling_range;

@@ -14,6 +14,8 @@ pub enum Setting {
     Method(&'static str),
     /// Planner that has a solver of its own.
     MethodWithSolver,
+    /// Part of a pose that comes first: "position" or "orientation".
+    First(&'static str),
     /// Tip of a robot that has several.
     Tip,
     /// Common task of all tips.
@@ -28,6 +30,8 @@ pub enum Setting {
     RaiseInvalid,
     /// Approach from rest to a moving path.
     Ease,
+    /// Way back of a tracked arm to a configuration on its target.
+    Recover,
     /// Motion out of a contact first.
     FreeStart,
     /// Joint velocity at the start.
@@ -85,6 +89,7 @@ impl fmt::Display for Setting {
                 return write!(f, "{article} {kind} limit");
             }
             Self::Method(name) => return write!(f, "the method '{name}'"),
+            Self::First(part) => return write!(f, "a task with the {part} first"),
             Self::Prefer(which) => return write!(f, "the preference '{which}'"),
             Self::Budget => "budget",
             Self::MethodWithSolver => "the method 'tpbso'",
@@ -94,6 +99,7 @@ impl fmt::Display for Setting {
             Self::AllTurns => "taking all whole turns",
             Self::RaiseInvalid => "make invalid items an error",
             Self::Ease => "an eased start",
+            Self::Recover => "recovery",
             Self::FreeStart => "free_start",
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",

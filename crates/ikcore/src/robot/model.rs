@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
+use smallvec::SmallVec;
+
 use super::body::Bodies;
 use super::description::{Description, Element};
 use super::joint::Joint;
@@ -13,7 +15,9 @@ use super::stance::Stance;
 use super::tip_chain::TipChains;
 use super::visual::Visual;
 use crate::bodies::BodyModel;
-use crate::closed_form::{ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily};
+use crate::closed_form::{
+    ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily, PositionArm, SEEDS, Seed,
+};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::{Chain, Transmission};
@@ -58,6 +62,8 @@ pub struct Robot {
     task_rank: OnceLock<TaskRank>,
     /// Decided at first use; copies that differ in base and tool share it.
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
+    /// Decided at first use; copies that differ in base and tool share it.
+    position_arm: Arc<OnceLock<Option<PositionArm>>>,
 }
 
 /// The elements that move one of several tips alone, from the end of those that it shares with others.
@@ -99,6 +105,7 @@ impl Robot {
             arms: Arc::default(),
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
+            position_arm: Arc::default(),
         })
     }
 
@@ -291,6 +298,24 @@ impl Robot {
         self.closed_form_or_reason().as_ref().ok().map(ClosedFormArm::is_at_once)
     }
 
+    /// Writes configurations at or near the position of `pose` within these limits, whose orientation is nearly nearest; the best
+    /// come first. Returns false without a closed form for positions.
+    pub(crate) fn position_seeds(
+        &self,
+        pose: &Frame,
+        limits: [&[f64]; 2],
+        found: &mut SmallVec<[Seed; SEEDS]>,
+    ) -> bool {
+        let arm = self.position_arm.get_or_init(|| {
+            let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
+            if self.tip_count() == 1 { PositionArm::new(&chain, self.dof()) } else { None }
+        });
+        let Some(arm) = arm else { return false };
+        let target = Frame::from(self.base()).inverse().then::<Baseline>(pose);
+        arm.seeds(&target, &Frame::from(self.tool()), limits, found);
+        true
+    }
+
     /// The pose of the flange, seen from the first link, that brings the tip to `pose`.
     fn at_flange(&self, pose: &Frame) -> Frame {
         let (base, tool) = (Frame::from(self.base()), Frame::from(self.tool()));
@@ -340,7 +365,8 @@ impl Robot {
     /// Gives `robot`, which has the same chain, what was found of this one.
     fn lend_to(&self, robot: Self) -> Self {
         let (start_index, closed_form, arms) = (self.start_index.clone(), self.closed_form.clone(), self.arms.clone());
-        Self { start_index, closed_form, arms, ..robot }
+        let position_arm = self.position_arm.clone();
+        Self { start_index, closed_form, position_arm, arms, ..robot }
     }
 
     /// Copy of the robot with these named configurations in place of others.

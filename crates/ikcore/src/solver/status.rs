@@ -63,6 +63,10 @@ statuses! {
         "Nearer than the margin to an obstacle, or with two links nearer to each other; the target may be reached.";
     HeldByObstacle = 15, "HELD_BY_OBSTACLE":
         "A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.";
+    RotationGivenUp = 16, "ROTATION_GIVEN_UP":
+        "The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.";
+    PositionGivenUp = 17, "POSITION_GIVEN_UP":
+        "The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.";
 }
 
 impl Status {
@@ -86,6 +90,12 @@ impl Status {
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::InCollision => "move the target or what is in the way, or lower the margin",
             Self::HeldByObstacle => "move the target or what is in the way, lower the margin, or plan a way round",
+            Self::RotationGivenUp => {
+                "turn the target, give the rotation a tolerance, or take a task that leaves it free, such as Position or Pointing"
+            }
+            Self::PositionGivenUp => {
+                "move the target, give the position a tolerance, or take a task that leaves it free, such as Orientation"
+            }
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {
                 "try another start or seed, MultiStart, or a solver that searches inside the limits, such as LevenbergMarquardt"

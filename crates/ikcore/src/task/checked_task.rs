@@ -2,15 +2,20 @@
 
 use super::assessment::Assessment;
 use super::criterion::Criterion;
+use super::first::First;
 use super::subject::Subject;
 use super::target::Target;
 use super::tip_task::TaskKind;
 use crate::error::Result;
 use crate::math::arithmetic::NoFma;
+use crate::math::box_step::ROWS;
 use crate::math::so3::cross;
 use crate::math::{Columns, Frame};
 use crate::objective::TaskBlock;
 use crate::robot::Robot;
+
+/// Number of joints that a pose needs.
+const POSE: usize = 6;
 
 /// Validated task.
 #[derive(Debug, Clone)]
@@ -21,6 +26,8 @@ pub struct CheckedTask {
     pub(super) kind: Option<TaskKind>,
     /// Criterion for reaching the target, with weights.
     pub(crate) criterion: Criterion,
+    /// Part of a pose that comes before the other.
+    pub(crate) first: Option<First>,
     /// Tool of the task, in the frame of the moving tip.
     pub(super) tool: Option<Box<Frame>>,
     /// Weight of the residual relative to other tasks.
@@ -30,11 +37,22 @@ pub struct CheckedTask {
 impl<T: Into<Criterion>> From<T> for CheckedTask {
     /// Task of reaching the whole target of the only tip, by this criterion.
     fn from(criterion: T) -> Self {
-        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), tool: None, weight: 1.0 }
+        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), first: None, tool: None, weight: 1.0 }
     }
 }
 
 impl CheckedTask {
+    /// Part that comes first where the whole of `target` cannot be met by the only tip of a robot with `dof` joints; `None` where
+    /// both parts are balanced.
+    pub(crate) fn comes_first(&self, target: &Target, dof: usize) -> Option<First> {
+        let plain = self.criterion.region.is_none()
+            && self.criterion.components.is_none_or(|components| components.weights == [1.0; ROWS]);
+        match target {
+            Target::Pose(_) if plain => self.first.or((dof < POSE).then_some(First::Position)),
+            _ => None,
+        }
+    }
+
     /// Removes the tool, which the robot carries.
     pub(crate) fn leave_tool(&mut self) {
         self.tool = None;

@@ -22,6 +22,9 @@ pub struct Criterion {
     pub region: Option<Region>,
     /// Value of a tip outside its region.
     pub outside: Outside,
+    /// Whether the value is what lies beyond the tolerances, instead of the whole error.
+    #[serde(skip)]
+    pub(crate) beyond: bool,
 }
 
 impl From<Tolerance> for Criterion {
@@ -48,7 +51,7 @@ impl Criterion {
     /// Whether components are assessed separately, so that the distance alone does not decide.
     #[inline(always)]
     pub(super) fn is_componentwise(&self) -> bool {
-        self.components.is_some() || self.region.is_some()
+        self.components.is_some() || self.region.is_some() || self.beyond
     }
 
     /// Margin (m) that the tip keeps from the faces.

@@ -17,6 +17,13 @@ pub enum Goal {
         /// Weight among several goals.
         weight: f64,
     },
+    /// Distance from a posture in which joints count differently: the sum of (weight * (q - posture))^2.
+    WeightedPosture {
+        /// Posture (n,) (rad, m).
+        posture: Vec<f64>,
+        /// Weight of each joint's distance (n,): its cost of moving, compared with other joints.
+        weights: Vec<f64>,
+    },
     /// Distance from the middle of the limits: the sum of ((q - middle) / range)^2 over the joints that have limits.
     Centring {
         /// Weight among several goals.
@@ -78,9 +85,10 @@ enum Part {
 const SINGULAR: f64 = 1e-12;
 
 impl Goal {
-    /// Weight among several goals.
+    /// Weight among several goals; the largest of a joint where each has its own.
     pub fn weight(&self) -> f64 {
         match self {
+            Self::WeightedPosture { weights, .. } => weights.iter().copied().fold(0.0, f64::max),
             Self::Posture { weight, .. }
             | Self::Centring { weight }
             | Self::Manipulability { weight, .. }
@@ -92,8 +100,13 @@ impl Goal {
     /// Checks the numbers of the goal.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a weight or a distance that is not positive.
+    /// [`Error::OutOfRange`] for a weight or a distance that is not positive; of the weights of joints, one must be.
     pub fn validate_numbers(&self) -> Result<()> {
+        if let Self::WeightedPosture { weights, .. } = self
+            && let Some(j) = weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite()))
+        {
+            return Err(Error::out_of_range(format!("weight[{j}] of a goal"), "zero or more, and finite", weights[j]));
+        }
         require_positive("weight of a goal", self.weight())?;
         if let Self::Clearance { up_to, .. } = self { require_positive("up_to", *up_to) } else { Ok(()) }
     }
@@ -107,6 +120,10 @@ impl Goal {
         self.validate_numbers()?;
         match self {
             Self::Posture { posture, .. } => robot.check("posture", posture),
+            Self::WeightedPosture { posture, weights } => {
+                robot.check("posture", posture)?;
+                robot.check("weight of a goal", weights)
+            }
             Self::Clearance { .. } if !among_obstacles => Err(Error::Contradiction {
                 problem: message!["the goal Clearance is for calls with ", Setting::Surroundings],
             }),
@@ -129,6 +146,10 @@ impl Goal {
         match self {
             Self::Posture { posture, weight } => {
                 Term::Springs { stiffness: vec![*weight; posture.len()], rest: posture.clone() }
+            }
+            Self::WeightedPosture { posture, weights } => {
+                let stiffness = weights.iter().map(|weight| weight * weight).collect();
+                Term::Springs { stiffness, rest: posture.clone() }
             }
             Self::Centring { weight } => {
                 let ranges = bounds.lower().iter().zip(bounds.upper());

@@ -4,15 +4,18 @@
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
 //! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q. A
 //! `named_task` is for a tip or a pair of tips; validated, it is a `checked_task`; `aims` are such tasks with their targets.
-//! [`Goals`] are costs in the null space of the task.
+//! `band` reduces errors to what lies beyond the tolerances; `ranked` models a pose in which one part comes [`First`]. [`Goals`] are costs in the null space of the task.
 
 mod aims;
 mod assessment;
+mod band;
 mod checked_task;
 mod components;
 mod criterion;
+mod first;
 mod goal;
 mod named_task;
+mod ranked;
 mod region;
 mod region_assessment;
 pub(crate) mod residual;
@@ -29,6 +32,7 @@ pub use assessment::Assessment;
 pub use checked_task::CheckedTask;
 pub use components::Components;
 pub use criterion::Criterion;
+pub use first::First;
 pub use goal::{Goal, Goals};
 pub use named_task::NamedTask;
 pub use region::{Outside, Region};

@@ -36,6 +36,7 @@ impl NamedTask {
         let criterion = task.map_or(tolerance.into(), |task| task.criterion(tolerance));
         criterion.validate()?;
         let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
-        Ok(CheckedTask { subject, kind: task.map(|task| task.kind), criterion, tool, weight: 1.0 })
+        let (kind, first) = (task.map(|task| task.kind), task.and_then(|task| task.first));
+        Ok(CheckedTask { subject, kind, criterion, first, tool, weight: 1.0 })
     }
 }

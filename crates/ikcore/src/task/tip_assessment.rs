@@ -16,10 +16,18 @@ impl Target {
     #[inline]
     pub(super) fn assess_tip_anywhere(&self, tip: &Frame, criterion: &Criterion) -> Assessment {
         let (error, value) = self.error(tip);
-        match &criterion.components {
+        let mut assessment = match &criterion.components {
             None => criterion.assess_unweighted(error, value),
             Some(components) => criterion.assess_components(components, self, &self.residual(tip), error),
+        };
+        if criterion.beyond {
+            let mut block = TaskBlock { residual: self.residual(tip), ..TaskBlock::default() };
+            if let Some(components) = &criterion.components {
+                components.apply(self, 0, &mut block);
+            }
+            assessment.score.value = criterion.reduce_to_excess(self, 0, &mut block);
         }
+        assessment
     }
 
     /// Writes weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and returns the
@@ -33,9 +41,17 @@ impl Target {
         out: &mut TaskBlock,
     ) -> Assessment {
         let (error, value) = self.linearize_unweighted(tip, dof, out);
-        let Some(components) = &criterion.components else { return criterion.assess_unweighted(error, value) };
-        let assessment = criterion.assess_components(components, self, &out.residual, error);
-        components.apply(self, dof, out);
+        let mut assessment = match &criterion.components {
+            None => criterion.assess_unweighted(error, value),
+            Some(components) => {
+                let assessment = criterion.assess_components(components, self, &out.residual, error);
+                components.apply(self, dof, out);
+                assessment
+            }
+        };
+        if criterion.beyond {
+            assessment.score.value = criterion.reduce_to_excess(self, dof, out);
+        }
         assessment
     }
 

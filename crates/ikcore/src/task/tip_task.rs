@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::components::{Components, check_tolerances, check_weights};
 use super::criterion::Criterion;
+use super::first::First;
 use super::region::Region;
 use super::target::Target;
 use super::tip_error::Tolerance;
@@ -40,6 +41,9 @@ pub struct Task {
     pub tool: Option<Pose>,
     /// Region of the tip. `None` means unrestricted.
     pub region: Option<Region>,
+    /// Part of a pose that comes before the other. `None` means the position for a robot with fewer than six joints, where the
+    /// whole pose cannot be met, and neither for others.
+    pub first: Option<First>,
 }
 
 impl TaskKind {
@@ -104,7 +108,7 @@ impl TaskKind {
 
 impl From<TaskKind> for Task {
     fn from(kind: TaskKind) -> Self {
-        Self { kind, components: None, tool: None, region: None }
+        Self { kind, components: None, tool: None, region: None, first: None }
     }
 }
 
@@ -125,7 +129,7 @@ impl Task {
                 tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
             }),
         };
-        let task = Self { kind, components, tool, region: None };
+        let task = Self { kind, components, tool, region: None, first: None };
         task.validate().map(|()| task)
     }
 
@@ -135,6 +139,15 @@ impl Task {
     /// As [`validate`](Self::validate).
     pub fn within(self, region: Region) -> Result<Self> {
         let task = Self { region: Some(region), ..self };
+        task.validate().map(|()| task)
+    }
+
+    /// Puts one part of a pose before the other.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn with_first(self, first: First) -> Result<Self> {
+        let task = Self { first: Some(first), ..self };
         task.validate().map(|()| task)
     }
 
@@ -162,7 +175,7 @@ impl Task {
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::OutOfRange`] names the entry; [`Error::Contradiction`] for a region combined
     /// with weights that leave some, but not all, of x, y and z of a pose free: the region is aligned with the base,
-    /// the weights with the target.
+    /// the weights with the target; and for an order of the parts of a task that has one part, weights or a region.
     pub fn validate(&self) -> Result<()> {
         if let TaskKind::Pointing { axis } = &self.kind {
             require_finite("axis", axis, |i| format!("entry {i}"))?;
@@ -170,6 +183,7 @@ impl Task {
                 return Err(Error::out_of_range("the length of axis", "positive", 0.0));
             }
         }
+        self.check_order()?;
         let Some(components) = &self.components else { return Ok(()) };
         components.validate()?;
         let free = components.weights[..3].iter().filter(|weight| **weight == 0.0).count();
@@ -184,6 +198,25 @@ impl Task {
             });
         }
         Ok(())
+    }
+
+    /// Checks that an order is for a pose whose parts nothing else balances.
+    fn check_order(&self) -> Result<()> {
+        let Some(first) = self.first else { return Ok(()) };
+        let problem = match (self.kind, self.components) {
+            (TaskKind::Pose, Some(components)) if components.weights != [1.0; ROWS] => {
+                "an order of position and orientation takes no weights, which balance them: leave one out".into()
+            }
+            (TaskKind::Pose, _) if self.region.is_some() => {
+                "an order of position and orientation takes no region: leave one out".into()
+            }
+            (TaskKind::Pose, _) => return Ok(()),
+            (other, _) => format!(
+                "task {} has no order of position and orientation ('{first}' first): take task Pose",
+                other.name()
+            ),
+        };
+        Err(Error::Contradiction { problem: problem.into() })
     }
 
     /// Returns the part of `wanted`, a position or a pose, that this task uses.

@@ -122,8 +122,7 @@ impl<'a> Tube<'a> {
     fn assembled(&self, basis: CubicBasis, joints: &[Vec<f64>]) -> JointPath {
         let [begin, end] = [self.path.breaks()[0], self.path.breaks()[self.path.pieces()]];
         let (n, span) = (joints.len(), end - begin);
-        let mut breaks: Vec<f64> =
-            (0..=basis.pieces).map(|i| begin + span * i as f64 / basis.pieces as f64).collect();
+        let mut breaks: Vec<f64> = (0..=basis.pieces).map(|i| begin + span * i as f64 / basis.pieces as f64).collect();
         breaks[basis.pieces] = end;
         let lengths = vec![span / basis.pieces as f64; basis.pieces];
         let mut coefficients = vec![0.0; basis.pieces * POWERS * n];

@@ -37,7 +37,11 @@ pub fn time_optimal_within(
     for width in 0..WIDTHS {
         let tolerance: Vec<f64> = widest.iter().map(|widest| widest * WIDTH_RATIO.powi(-width)).collect();
         let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else {
-            if width == 0 || pieces > 1 { break } else { continue };
+            if width == 0 || pieces > 1 {
+                break;
+            } else {
+                continue;
+            };
         };
         pieces = needed;
         if limits.require_for(&smooth).is_err() {

@@ -265,7 +265,7 @@ impl Record {
     }
 
     /// Sets the status of the whole track: solved if it stayed in the band from the first tick there on and kept every limit,
-    /// held in its region if at times the region kept it from the band.
+    /// or with what it gave up for the part of the pose that comes first; held in its region if at times the region kept it from the band.
     pub(super) fn finish(&mut self, interrupted: bool, elapsed: Duration) {
         self.elapsed = elapsed;
         let last = *self.step_status.last().unwrap_or(&Status::Capped);
@@ -273,10 +273,19 @@ impl Record {
             _ if interrupted => Status::Interrupted,
             Some(_) if self.worst_violation.is_some() => Status::Lost,
             Some(joined) if self.step_status[joined..].iter().all(|s| *s == Status::Solved) => Status::Solved,
+            Some(joined) if let Some(part) = self.given_up(joined) => part,
             Some(joined) if self.step_status[joined..].iter().all(is_in_place) => Status::HeldInRegion,
             Some(_) => Status::Lost,
             None => last,
         };
+    }
+
+    /// Part given up in some steps from row `joined` on, if the other was met in all.
+    fn given_up(&self, joined: usize) -> Option<Status> {
+        let steps = &self.step_status[joined..];
+        let parts = [Status::RotationGivenUp, Status::PositionGivenUp];
+        let part = steps.iter().find(|status| parts.contains(status))?;
+        steps.iter().all(|status| status == part || *status == Status::Solved).then_some(*part)
     }
 
     /// Number of rows, k.
@@ -416,6 +425,20 @@ impl Record {
             );
             return message![except, self.status.advice()];
         }
+        if matches!(self.status, Status::RotationGivenUp | Status::PositionGivenUp) {
+            let count = self.step_status[joined..].iter().filter(|status| **status == self.status).count();
+            let (met, part, off) = match self.status {
+                Status::RotationGivenUp => {
+                    (self.in_words(position, f64::NAN), "rotation", format!("{} rad", number(rotation)))
+                }
+                _ => (self.in_words(f64::NAN, rotation), "position", format!("{} m", number(position))),
+            };
+            let first = if part == "rotation" { "position" } else { "rotation" };
+            let sentence = format!(
+                "{first} met to {met} from t = {since} s on; {part} given up in {count} of {last} steps, by up to {off}: "
+            );
+            return message![sentence, self.status.advice()];
+        }
         let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
         let joined = format!(
             "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: "
@@ -440,9 +463,9 @@ impl Record {
     }
 }
 
-/// Whether the tick ended in the band, or as near to it as the region allows.
+/// Whether the tick ended in the band, as near to it as the region allows, or with the part of the pose that comes first met.
 fn is_in_place(status: &Status) -> bool {
-    matches!(status, Status::Solved | Status::HeldInRegion)
+    matches!(status, Status::Solved | Status::HeldInRegion | Status::RotationGivenUp | Status::PositionGivenUp)
 }
 
 /// Smallest error; NaN (not part of the task) is ignored.

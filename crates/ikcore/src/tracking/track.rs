@@ -77,7 +77,7 @@ pub fn track_tips(
     }
     let finished = follow(asked, &mut session, &mut record, monitor)?;
     record.finish(!finished, stopwatch.elapsed());
-    if finished && !matches!(record.status, Status::Solved | Status::HeldInRegion) {
+    if finished && matches!(record.status, Status::Lost | Status::Capped | Status::Improved) {
         record.out_of_reach = farthest_out_of_reach(asked, record.joined().unwrap_or(0), &mut session)?;
     }
     Ok(record)

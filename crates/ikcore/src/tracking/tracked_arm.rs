@@ -11,11 +11,16 @@ use super::step_context::StepContext;
 use super::target_stream::TargetStream;
 use super::track_options::TrackOptions;
 use crate::error::Result;
+use crate::ik::given_up;
 use crate::limits::{AdmittedStart, Field, LimitAt, Limits, StartSlack, TickBox};
 use crate::message::Message;
 use crate::objective::Point;
 use crate::robot::Robot;
-use crate::task::Aims;
+use crate::solver::Status;
+use crate::task::{Aims, SquaredError};
+
+/// Speed below which a joint rests (rad/s, m/s).
+const REST: f64 = 1e-4;
 
 /// Tracked arm in motion, tick by tick.
 #[derive(Debug)]
@@ -78,6 +83,11 @@ impl TrackedArm {
         };
         arm.require_in_region("start", &q)?;
         Ok(arm)
+    }
+
+    /// Whether all joints rest if they move to `q` in this tick.
+    pub fn rests_at(&self, q: &[f64]) -> bool {
+        q.iter().zip(&self.q).all(|(to, from)| (to - from).abs() <= REST * self.dt)
     }
 
     /// Inputs of the next step.
@@ -145,6 +155,12 @@ impl TrackedArm {
     pub fn is_blocked_by_region(&self) -> bool {
         let only = self.aims().only(&self.robot);
         only.is_some_and(|(target, criterion)| criterion.blocked_by_region(target).is_some())
+    }
+
+    /// Status at an error beyond the tolerances, if the part of the only target that comes first is met.
+    pub fn given_up(&self, error: &SquaredError) -> Option<Status> {
+        let (task, target) = self.aims().iter().next().filter(|_| self.has_one_tip())?;
+        given_up(task, target, self.robot.dof(), error)
     }
 
     /// Assesses the result `found`, with one evaluation.

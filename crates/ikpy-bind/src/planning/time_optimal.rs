@@ -1,6 +1,8 @@
 //! `time_optimal`.
 
-use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest, time_optimal_within};
+use ikcore::planning::{
+    ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest, time_optimal_within,
+};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 

@@ -29,6 +29,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Task::validate" NotFinite: weighed(TaskKind::Pointing { axis: [NAN; 3] }, &[1.0; 4]), "axis must be finite, but entry 0 is NaN";
         "Task::validate" OutOfRange: weighed(TaskKind::Position, &[-1.0, 1.0, 1.0]), "weights[0] must be zero or more, and finite, got -1";
         "Task::validate" Contradiction: weighed(TaskKind::Pose, &[0.0, 1.0, 1.0, 1.0, 1.0, 1.0]).unwrap().within(within()), "region keeps x, y and z of the base, but weights free some of x, y and z of the target: free all three or none, or take task Position, whose axes are the base's";
+        "Task::with_first" Contradiction: Task::from(TaskKind::Position).with_first(First::Position), "task Position has no order of position and orientation ('position' first): take task Pose";
         "Task::target" WrongTarget: weighed(TaskKind::Orientation, &[1.0; 3]).unwrap().target(&Target::Position([0.0; 3])), "task Orientation needs a target pose (4, 4), got a position (3,)";
         "Goal::validate_numbers" OutOfRange: Goal::Centring { weight: 0.0 }.validate_numbers(), "weight of a goal must be positive and finite, got 0";
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";

@@ -298,9 +298,13 @@ impl TipPath {
 fn with_position(task: &Task) -> Task {
     let free = Components { weights: [0.0, 0.0, 0.0, 1.0, 1.0, 1.0], tolerance: None };
     match task.kind {
-        TaskKind::Orientation => {
-            Task { kind: TaskKind::Pose, components: task.components.or(Some(free)), tool: None, region: None }
-        }
+        TaskKind::Orientation => Task {
+            kind: TaskKind::Pose,
+            components: task.components.or(Some(free)),
+            tool: None,
+            region: None,
+            first: None,
+        },
         _ => Task { tool: None, ..*task },
     }
 }

@@ -6,8 +6,9 @@
 //! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
 use super::tick::{Tick, TickResult};
+use crate::ik::RankedDescent;
 use crate::math::vector::{distance, largest_difference};
-use crate::motion::{GoalSample, MovingGoal, Pursuit};
+use crate::motion::{GoalSample, JointState, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
 use crate::tracking::step_context::StepContext;
@@ -58,6 +59,18 @@ impl GoalPursuit {
         self.goal = None;
     }
 
+    /// Makes `q` the goal, at rest.
+    pub(crate) fn head_for(&mut self, q: &[f64]) {
+        let at_rest = JointState::at_rest(q.len());
+        self.goal = Some(MovingGoal::of_arm(q, &at_rest, self.now, self.now + 1.0));
+        (self.since_held, self.nearest) = (None, None);
+    }
+
+    /// The goal, if there is one.
+    pub(crate) fn goal(&self) -> Option<&[f64]> {
+        self.goal.as_ref().map(MovingGoal::q)
+    }
+
     /// Finds a sample of the goal if new targets have arrived, of age `tick.sampled_ago` (ticks) at the end of the tick.
     pub(super) fn find_sample(&mut self, tick: &mut Tick<'_>) -> TickResult {
         let StepContext { q, aims, limited, .. } = tick.context;
@@ -78,8 +91,34 @@ impl GoalPursuit {
             goal.expected(time, motion.scales(), &mut self.expected);
         }
         let anew = (aims.has_pairs() && self.has_no_way(self.away(q))).then_some(q);
-        self.solve(anew, time, &tick.context.positions(), &mut found, tick);
+        let positions = tick.context.positions();
+        self.solve(anew, time, &positions, &mut found, tick);
+        self.solve_in_order(&positions, &mut found, tick);
         found
+    }
+
+    /// Solves for a sample within the tolerances where the target itself was not met, or of a pose of which one part comes first.
+    fn solve_in_order(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
+        let StepContext { robot, aims, .. } = tick.context;
+        let ranked = tick.ranked();
+        if ranked.is_none() && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
+            return;
+        }
+        found.evaluations += 1;
+        if aims.assess(robot, &self.sample).score.solved {
+            return;
+        }
+        let mut near = TickResult::at(&self.sample);
+        let is_within = tick.descend_into_band(&mut near, positions);
+        found.evaluations += near.evaluations;
+        if is_within {
+            self.sample = near.q;
+            return;
+        }
+        let Some((pose, first)) = ranked else { return };
+        let mut descent = RankedDescent::new(robot, &pose, first, positions);
+        self.sample = descent.descend(&self.expected).q;
+        found.evaluations += descent.evaluations;
     }
 
     /// Largest joint distance of the predicted goal from `q` (rad, m).
@@ -223,7 +262,11 @@ impl GoalPursuit {
     fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
         let mut end = TickResult::at(&self.sample);
-        tick.descend(&mut end, positions, Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() });
+        tick.descend(
+            &mut end,
+            positions,
+            Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() },
+        );
         found.evaluations += end.evaluations;
         found.iterations += end.iterations;
         let [before, after] = [&self.sample, &end.q].map(|q| aims.assess(robot, q).score);

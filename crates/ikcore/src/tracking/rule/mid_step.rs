@@ -3,10 +3,12 @@
 //! A step with the Jacobian at the start of the tick leaves an error of second order. The Jacobian at the middle, extrapolated
 //! from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single evaluation per tick reaches
 //! micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain null-space motion. If the box or a
-//! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error.
+//! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error. A pose of
+//! which one part comes first is then met in that order.
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
+use crate::ik::RankedDescent;
 use crate::math::Columns;
 use crate::math::{
     Frame,
@@ -15,7 +17,7 @@ use crate::math::{
 use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
 use crate::solver::Stop;
-use crate::task::Assessment;
+use crate::task::{Assessment, First, SquaredError};
 
 /// Largest number of model steps in a tick; they converge quadratically, so more would not help.
 const MOST_STEPS: usize = 10;
@@ -85,7 +87,14 @@ pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResu
     found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
-    if !found.is_solved() {
+    if !found.is_solved() && memory.into_band(&mut found, &mut tick) {
+        moved = true;
+    } else if !found.is_solved()
+        && let Some(ranked) = tick.ranked()
+    {
+        moved = true;
+        memory.in_order(ranked, &mut found, &tick);
+    } else if !found.is_solved() {
         moved = true;
         if !memory.follow_approach(value_at_rest, &mut found, &tick) {
             memory.levenberg_marquardt(&mut found, tick);
@@ -206,6 +215,46 @@ impl MidStepState {
             found.iterations += 1;
         }
         nearer
+    }
+
+    /// Moves within the tolerances, where the tick does not allow to meet the target itself.
+    fn into_band(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
+        let bounds = tick.bounds().clone();
+        if !tick.descend_into_band(found, &bounds) {
+            return false;
+        }
+        self.here.place(&found.q);
+        self.here.update(tick.context.robot);
+        found.set_tip(&self.here.tip, tick.target, tick.criterion);
+        true
+    }
+
+    /// Meets the part of the target that comes first, as far as the tick allows, and lowers the error of the other. Where it is far,
+    /// all joints move in proportion, if that lowers the error of the first part.
+    fn in_order(&mut self, (pose, first): (Frame, First), found: &mut TickResult, tick: &Tick<'_>) {
+        let first_error = |error: &SquaredError| match first {
+            First::Position => error.position.unwrap_or(0.0),
+            First::Orientation => error.rotation.unwrap_or(0.0),
+        };
+        found.q.copy_from_slice(&self.begin.q);
+        found.set_tip(&self.begin.tip, tick.target, tick.criterion);
+        let at_rest = first_error(&found.assessment.error);
+        let mut descent = RankedDescent::new(tick.context.robot, &pose, first, tick.bounds());
+        let reached = descent.descend(&found.q);
+        found.evaluations += descent.evaluations;
+        found.iterations += descent.evaluations;
+        if !reached.is_met() {
+            let mut near = found.clone();
+            if self.follow_approach(f64::INFINITY, &mut near, tick) && first_error(&near.assessment.error) < at_rest {
+                *found = near;
+                return;
+            }
+        }
+        self.here.place(&reached.q);
+        self.here.update(tick.context.robot);
+        found.q.copy_from_slice(&reached.q);
+        found.set_tip(&self.here.tip, tick.target, tick.criterion);
+        found.evaluations += 1;
     }
 
     /// Lowers the error as far as possible where model steps fail.

@@ -1,14 +1,19 @@
 //! Input and result of a rule for one tick.
 
+use smallvec::SmallVec;
+
 use crate::math::Frame;
 use crate::objective::{Bounds, Differentiable, Point, Score};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
-use crate::task::{Aims, Assessment, Criterion, Goals, SquaredError, Target, TargetSegment};
+use crate::task::{Aims, Assessment, CheckedTask, Criterion, First, Goals, SquaredError, Target, TargetSegment};
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
+
+/// Evaluation budget of a descent to a configuration within the tolerances.
+const INTO_BAND: usize = 30;
 
 /// Input of a rule for one tick.
 pub(in crate::tracking) struct Tick<'a> {
@@ -20,6 +25,8 @@ pub(in crate::tracking) struct Tick<'a> {
     pub goals: &'a mut Goals,
     /// Targets received so far.
     pub targets: &'a TargetStream,
+    /// Largest evaluation budget of a descent, beside the rule's own: less while a way back takes its part of the tick.
+    pub most_evaluations: usize,
     /// Age of the new targets at the end of the tick, in ticks; `None` if none arrived in this tick.
     pub sampled_ago: Option<f64>,
     pub rng: &'a mut LazyRng,
@@ -30,6 +37,25 @@ impl Tick<'_> {
     /// Box of joint positions at the end of the tick.
     pub(super) fn bounds(&self) -> &Bounds {
         &self.context.tick_box.bounds
+    }
+
+    /// Target pose, and the part of it that comes first where the whole cannot be met.
+    pub(super) fn ranked(&self) -> Option<(Frame, First)> {
+        let StepContext { robot, aims, .. } = self.context;
+        let (Target::Pose(pose), [task]) = (self.target, aims.tasks) else { return None };
+        let first = if robot.tip_count() == 1 { task.comes_first(self.target, robot.dof()) } else { None };
+        Some((*pose, first?))
+    }
+
+    /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.
+    pub(super) fn fraction_within(&self, from: &[f64], to: &[f64]) -> f64 {
+        let [lower, upper] = self.context.ends();
+        let fraction = |j: usize| {
+            let way = to[j] - from[j];
+            let room = if way > 0.0 { upper[j] } else { lower[j] } - from[j];
+            if way == 0.0 { 1.0 } else { room / way }
+        };
+        (0..from.len()).map(fraction).fold(1.0, f64::min)
     }
 
     /// Motion of the first target during the tick.
@@ -47,6 +73,32 @@ impl Tick<'_> {
         preferred.iter_mut().zip(q).for_each(|(preferred, q)| *preferred = q - self.context.dt * *preferred);
         self.bounds().clip(&mut preferred);
         Some(preferred)
+    }
+
+    /// Moves `found` within the tolerances, if some configuration in `bounds` near it is; returns whether that succeeds.
+    pub(super) fn descend_into_band(&mut self, found: &mut TickResult, bounds: &Bounds) -> bool {
+        let StepContext { robot, aims, .. } = self.context;
+        if !aims.iter().any(|(task, _)| task.criterion.has_band()) {
+            return false;
+        }
+        let aimed = |(task, _): (&CheckedTask, &Target)| {
+            let mut task = task.clone();
+            task.criterion = if task.criterion.has_band() { task.criterion.beyond_tolerance() } else { task.criterion };
+            task
+        };
+        let tasks: SmallVec<[CheckedTask; 1]> = aims.iter().map(aimed).collect();
+        let mut problem = Problem::new(robot, Aims { tasks: &tasks, targets: aims.targets });
+        let objective: &mut dyn Differentiable = &mut problem;
+        let stop = Stop { max_evaluations: INTO_BAND, ..Stop::default() };
+        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
+        found.evaluations += evaluator.evaluations() + 1;
+        found.iterations += evaluator.iterations();
+        let is_within = evaluator.best().solved;
+        if is_within {
+            found.q.copy_from_slice(&evaluator.best().x);
+        }
+        is_within
     }
 
     /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt. The result is not assessed.

@@ -1,0 +1,59 @@
+//! Seeds of the descents to a pose of which one part comes first.
+
+use smallvec::SmallVec;
+
+use crate::closed_form::SEEDS;
+use crate::ik::attempt::Attempt;
+use crate::math::Frame;
+use crate::objective::{Differentiable, Point};
+use crate::problem::Problem;
+use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
+use crate::task::{Aims, CheckedTask, First, Target, Tolerance};
+
+/// Starts of an arm without a closed form for positions.
+const STARTS: usize = 16;
+
+/// Evaluation budget of the descent from such a start to the first part alone.
+const TO_FIRST: usize = 30;
+
+impl Attempt<'_, '_> {
+    /// Seeds for an arm with a closed form for positions; `None` for others.
+    pub(super) fn closed_form_seeds(&self, pose: &Frame, first: First) -> Option<SmallVec<[Point; SEEDS]>> {
+        let robot = self.context.robot();
+        let mut seeds = SmallVec::new();
+        if first != First::Position || !robot.position_seeds(pose, self.context.sampling_ranges(), &mut seeds) {
+            return None;
+        }
+        Some(seeds.iter().map(|seed| Point::from_slice(&seed.q[..robot.dof()])).collect())
+    }
+
+    /// Seeds by descents to the first part alone, from `near` and from scattered starts.
+    pub(super) fn searched_seeds(&mut self, pose: &Frame, first: First, near: &[&[f64]]) -> Vec<Point> {
+        let target = match first {
+            First::Position => Target::Position(pose.origin),
+            First::Orientation => Target::Orientation(*pose),
+        };
+        let task = CheckedTask::from(Tolerance { position: 1e-9, rotation: 1e-9 });
+        let robot = self.context.robot();
+        let bounds = self.context.bounds();
+        let mut seeds: Vec<Point> = near.iter().map(|q| Point::from_slice(q)).collect();
+        let mut start = self.first_start(None);
+        for _ in 0..STARTS {
+            seeds.push(start.clone());
+            self.next_start(&mut start);
+        }
+        for seed in &mut seeds {
+            if self.budget.left() < TO_FIRST || !self.monitor.keep_going() {
+                break;
+            }
+            let mut problem = Problem::new(robot, Aims::of_one(&task, &target)).disregarding_turns();
+            let objective: &mut dyn Differentiable = &mut problem;
+            let stop = Stop { max_evaluations: TO_FIRST, ..Stop::default() };
+            let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+            run(&LevenbergMarquardt::default(), &mut evaluator, seed);
+            self.budget.add(&evaluator);
+            seed.copy_from_slice(&evaluator.best().x);
+        }
+        seeds
+    }
+}

@@ -1,0 +1,241 @@
+"""Poses of which one part comes first, tolerances that are aimed at, and joints that are to stay."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+from arms_of_few_joints import ARMS, FOUR, HOBBY, OFF_AXIS, ROUND, Array, errors, least_angle, turned
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+import beetle_ik as bik
+
+GIVEN_UP = bik.Status.ROTATION_GIVEN_UP
+QUARTERS = np.array([0.0, 0.5, 1.0, 2.0, -1.0]) * np.pi / 2
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_place_is_met_and_the_turn_least(name: str) -> None:
+    robot, random = ARMS[name], np.random.default_rng(1)
+    for i, q in enumerate(robot.random_configurations(12, seed=2)):
+        # Half of the turns are of round numbers.
+        vector = random.choice(QUARTERS, 3) if i % 2 else random.normal(0.0, 0.6, 3)
+        target = turned(robot.fk(q), vector)
+        found = bik.solve(robot, target)
+        away, angle = errors(robot, found.q, target)
+        assert away < 1e-6, (i, found.message)
+        assert ((robot.lower <= found.q) & (found.q <= robot.upper)).all()
+        assert found.status == (bik.Status.SOLVED if angle < 1e-6 else GIVEN_UP)
+        assert angle <= least_angle(robot, target, 6, seed=i) + 1e-3, (i, found.message)
+
+
+def test_a_start_chooses_among_equal_branches() -> None:
+    for q in HOBBY.random_configurations(20, seed=3):
+        target = turned(HOBBY.fk(q), np.array([0.2, -0.1, 0.3]))
+        free = bik.solve(HOBBY, target)
+        near = bik.solve(HOBBY, target, start=q)
+        assert near.rotation_error == pytest.approx(free.rotation_error, abs=1e-4)
+        assert np.linalg.norm(near.q - q) <= np.linalg.norm(free.q - q) + 1e-9
+
+
+def test_a_batch_gives_up_like_single_solves() -> None:
+    targets = np.array(
+        [turned(HOBBY.fk(q), np.array([0.3, 0.1, 0.0])) for q in HOBBY.random_configurations(20, seed=4)]
+    )
+    batch = bik.solve_batch(HOBBY, targets, threads=2)
+    alone = [bik.solve(HOBBY, target) for target in targets]
+    np.testing.assert_array_equal(batch.q, [found.q for found in alone])
+    np.testing.assert_array_equal(batch.status, [found.status for found in alone])
+    assert not batch.success.any()
+
+
+def test_the_message_says_what_was_given_up() -> None:
+    target = turned(HOBBY.fk(np.array([0.1, 0.2, 0.3, 0.4, 0.5])), np.array([0.3, 0.1, 0.4]))
+    found = bik.solve(HOBBY, target)
+    assert found.status == GIVEN_UP
+    assert found.message.startswith("position met to ")
+    assert " m, rotation given up: the nearest found is 0." in found.message
+    assert found.message.endswith(
+        " rad away: turn the target, give the rotation a tolerance, "
+        "or take a task that leaves it free, such as Position or Pointing"
+    )
+
+
+def test_beyond_reach_the_place_is_nearest_then_the_turn() -> None:
+    for robot in (HOBBY, FOUR, ROUND):
+        target = np.eye(4)
+        target[:3, 3] = 0.9 * np.array([1.0, 0.3, 0.9]) * (3.0 if robot is ROUND else 1.0)
+        target[:3, :3] = Rotation.from_rotvec([0.7, 0.2, -0.4]).as_matrix()
+        found = bik.solve(robot, target)
+        away, _ = errors(robot, found.q, target)
+        random = np.random.default_rng(0)
+        least = np.inf
+        for _ in range(20):
+
+            def missing(q: Array, robot: bik.Robot = robot, place: Array = target[:3, 3]) -> Array:
+                return robot.fk(q)[:3, 3] - place
+
+            start = random.uniform(robot.lower, robot.upper)
+            fit = least_squares(missing, start, bounds=(robot.lower, robot.upper))
+            least = min(least, float(np.linalg.norm(fit.fun)))
+        assert found.status == bik.Status.OUT_OF_REACH, found.message
+        assert away <= least + 1e-6
+        # No turn of the last joint alone brings the orientation nearer.
+        if robot is not FOUR:
+            for value in np.linspace(robot.lower[4], robot.upper[4], 50):
+                q = found.q.copy()
+                q[4] = value
+                assert errors(robot, q, target)[1] >= found.rotation_error - 1e-6
+        assert found.message.startswith("out of reach, the nearest found is ")
+
+
+def test_an_order_holds_on_arms_with_more_joints() -> None:
+    robot = bik.Robot.named("ur5e")
+    q = np.array([0.3, -1.2, 1.5, -0.8, 1.1, 0.4])
+    target = robot.fk(q).copy()
+    target[:3, 3] *= 1.6
+    both = bik.solve(robot, target)
+    turn = bik.solve(robot, target, task=bik.tasks.Pose(first="orientation"))
+    assert both.rotation_error > 1e-3
+    assert turn.rotation_error < 1e-6
+    assert turn.status == bik.Status.POSITION_GIVEN_UP, turn.message
+    assert turn.position_error <= both.position_error + 0.5
+    place = bik.solve(robot, robot.fk(q), task=bik.tasks.Pose(first="position"))
+    assert place.success
+    random, least = np.random.default_rng(0), np.inf
+    for _ in range(40):
+        q0 = random.uniform(np.maximum(robot.lower, -3), np.minimum(robot.upper, 3))
+
+        def residual(q: Array) -> Array:
+            pose = robot.fk(q)
+            angle = Rotation.from_matrix(pose[:3, :3].T @ target[:3, :3]).as_rotvec()
+            return np.r_[pose[:3, 3] - target[:3, 3], 3e3 * angle]
+
+        fit = least_squares(residual, q0, bounds=(robot.lower, robot.upper))
+        away, angle = errors(robot, fit.x, target)
+        least = min(least, away) if angle < 1e-4 else least
+    assert turn.position_error <= least + 1e-3
+
+
+def test_a_task_with_an_order_is_a_value() -> None:
+    task = bik.tasks.Pose(first="position", tolerance=[0.1] * 6)
+    assert task.first == "position"
+    assert bik.tasks.Pose().first is None
+    assert repr(task).endswith(", first='position')")
+    assert pickle.loads(pickle.dumps(task)) == task
+    assert task != bik.tasks.Pose(first="orientation", tolerance=[0.1] * 6)
+
+
+def test_orders_that_make_no_sense_are_refused() -> None:
+    with pytest.raises(bik.InvalidInputError, match=r"^first must be one of 'position', 'orientation', got 'place'$"):
+        bik.tasks.Pose(first="place")
+    with pytest.raises(bik.InvalidInputError, match=r"takes no weights, which balance them: leave one out$"):
+        bik.tasks.Pose(first="position", weights=[1, 1, 1, 0.5, 0.5, 0.5])
+    with pytest.raises(bik.InvalidInputError, match=r"takes no region: leave one out$"):
+        bik.tasks.Pose(first="position", region=((-1, -1, -1), (1, 1, 1)))
+
+
+def test_a_plan_ends_at_the_place_if_told_so() -> None:
+    start, q = np.zeros(5), np.array([0.5, 0.3, -0.4, 0.6, 0.2])
+    end = turned(HOBBY.fk(q), np.array([0.3, 0.2, 0.1]))
+    with pytest.raises(
+        bik.InvalidInputError, match=r"^end cannot be reached: position met to .* rotation given up"
+    ) as caught:
+        bik.plan_point_to_point(HOBBY, start_q=start, end=end)
+    assert str(caught.value).endswith('or give task=tasks.Pose(first="position") to end there')
+    plan = bik.plan_point_to_point(HOBBY, start_q=start, end=end, task=bik.tasks.Pose(first="position"))
+    assert plan.success, plan.message
+    away, angle = errors(HOBBY, plan.trajectory.at(plan.trajectory.duration)[0], end)
+    assert away < 1e-6
+    assert angle <= bik.solve(HOBBY, end).rotation_error + 1e-4
+
+
+@pytest.mark.parametrize("rate", [30, 1000])
+def test_a_tracker_keeps_the_place_where_the_turn_cannot_follow(rate: int) -> None:
+    for robot in (HOBBY, OFF_AXIS):
+        q0 = np.array([0.2, 0.4, 0.3, 0.5, 0.1])
+        middle = robot.fk(q0)
+        dt = 1.0 / rate
+        tracker = bik.Tracker(robot, q0, dt=dt)
+        seen: set[bik.Status] = set()
+        before = q0
+        for i in range(int(2.0 / dt)):
+            angle = 0.6 * np.sin(2.0 * np.pi * 0.5 * i * dt)
+            target = turned(middle, angle * np.array([0.5, 0.2, 1.0]))
+            target[:3, 3] += 0.01 * np.array([0.0, np.sin(2.0 * i * dt), 0.0])
+            step = tracker.step(target)
+            assert np.linalg.norm(robot.fk(step.q)[:3, 3] - target[:3, 3]) < 1e-4, (i, step.message)
+            assert (np.abs(step.q - before) <= 3.0 * dt * (1 + 1e-9)).all()
+            before = step.q
+            seen.add(step.status)
+        assert GIVEN_UP in seen
+
+
+def test_a_track_says_what_it_gave_up() -> None:
+    q0 = np.array([0.2, 0.4, 0.3, 0.5, 0.1])
+    time = np.linspace(0.0, 2.0, 101)
+    poses = np.array([turned(HOBBY.fk(q0), np.array([0.0, 0.0, 0.3 * np.sin(3.0 * t)])) for t in time])
+    result = bik.track(HOBBY, bik.paths.from_samples(time, poses), q0, dt=0.02)
+    assert result.status == GIVEN_UP
+    assert np.nanmax(result.position_error) < 1e-4
+    assert result.message.startswith("position met to ")
+    assert "; rotation given up in " in result.message
+
+
+def test_wider_tolerances_never_lose_a_target() -> None:
+    random = np.random.default_rng(5)
+    for robot in (HOBBY, FOUR, bik.Robot.named("ur5e"), bik.Robot.named("panda")):
+        for q in robot.random_configurations(15, seed=6):
+            target = turned(robot.fk(q), random.normal(0.0, 0.2, 3))
+            tolerance = np.r_[10.0 ** random.uniform(-6, -2, 3), 10.0 ** random.uniform(-6, 0.2, 3)]
+            met = [
+                bik.solve(robot, target, task=bik.tasks.Pose(tolerance=factor * tolerance)).success
+                for factor in (1.0, 3.0, 10.0, 100.0)
+            ]
+            assert met == sorted(met), (robot.name, met)
+            scalar = [
+                bik.solve(robot, target, position_tolerance=factor * 1e-4, rotation_tolerance=factor * 2e-2).success
+                for factor in (1.0, 3.0, 10.0)
+            ]
+            assert scalar == sorted(scalar), (robot.name, scalar)
+
+
+@pytest.mark.parametrize("name", ["hobby", "four", "ur5e", "panda"])
+def test_whatever_is_within_the_tolerances_is_met(name: str) -> None:
+    robot = ARMS[name] if name in ARMS else bik.Robot.named(name)
+    random = np.random.default_rng(7)
+    for q in robot.random_configurations(60, seed=8):
+        tolerance = np.r_[10.0 ** random.uniform(-4, -2, 3), 10.0 ** random.uniform(-2, 0, 3)]
+        pose = robot.fk(q)
+        # The components of the pose that is met, along the axes of the target, are at most 0.95 of the tolerances.
+        turn = Rotation.from_rotvec(0.95 * tolerance[3:] * random.uniform(-1, 1, 3))
+        target = pose.copy()
+        target[:3, :3] = pose[:3, :3] @ turn.as_matrix().T
+        target[:3, 3] -= target[:3, :3] @ (0.95 * tolerance[:3] * random.uniform(-1, 1, 3))
+        found = bik.solve(robot, target, task=bik.tasks.Pose(tolerance=tolerance))
+        assert found.success, (name, found.message)
+
+
+def test_joints_of_a_large_weight_stay() -> None:
+    limits = {"lower": [-3, -3, -3.1], "upper": [3, 3, 3.1], "velocity": [0.8, 0.8, 1.0]}
+    robot = bik.Robot.named("panda").with_mobile_base("planar", **limits)
+    start = np.array([0.5, -0.2, 0.4, 0, -0.4, 0, -2.0, 0, 1.6, 0.8])
+    target = robot.fk(start).copy()
+    target[0, 3] += 0.01
+    weight = np.r_[[100.0] * 3, np.ones(7)]
+    goal = bik.goals.Posture(start, weight=weight)
+    np.testing.assert_array_equal(goal.weight, weight)
+    assert pickle.loads(pickle.dumps(goal)) == goal
+    found = bik.solve(robot, target, start=start, goals=[goal])
+    assert found.success
+    assert np.linalg.norm(found.q[:2] - start[:2]) < 1e-4
+    plain = bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=2.0)])
+    assert np.linalg.norm(plain.q[:2] - start[:2]) > 3e-3
+    same = bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=np.full(10, 2.0))])
+    np.testing.assert_allclose(same.q, plain.q, atol=1e-5)
+    with pytest.raises(bik.InvalidInputError, match=r"^weight\[1\] of a goal must be zero or more, and finite, got -1"):
+        bik.goals.Posture(start[:3], weight=[1.0, -1.0, 1.0])
+    with pytest.raises(bik.InvalidInputError, match=r"^weight of a goal: "):
+        bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=[1.0, 2.0])])
