@@ -1,7 +1,7 @@
 //! Clouds and grids without the robot's own points.
 
 use ikcore::math::Pose;
-use ikcore::obstacle::{Measured, Obstacle, Obstacles, Scene, Surroundings, WithoutRobot};
+use ikcore::obstacle::{Obstacle, Obstacles, Scene, Sensed, Surroundings, WithoutRobot};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
 use ikcore::shape::{Geometry, Shape};
@@ -165,8 +165,8 @@ fn sensor_obstacles_are_known_by_their_contacts() {
     let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
     let cube = vec![true];
     let shapes = [
-        (Shape::point_cloud(vec![[0.0; 3]], 0.1), Some(Measured::PointCloud)),
-        (Shape::grid([0.0; 3], 0.1, [1; 3], cube), Some(Measured::Grid)),
+        (Shape::point_cloud(vec![[0.0; 3]], 0.1), Some(Sensed::PointCloud)),
+        (Shape::grid([0.0; 3], 0.1, [1; 3], cube), Some(Sensed::Grid)),
         (Shape::sphere([0.0; 3], 0.1), None),
     ];
     for (shape, kind) in shapes {
