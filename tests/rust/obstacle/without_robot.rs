@@ -1,7 +1,7 @@
 //! Clouds and grids without the robot's own points.
 
 use ikcore::math::Pose;
-use ikcore::obstacle::{Measured, Obstacle, Obstacles, Scene, Surroundings, WithoutRobot};
+use ikcore::obstacle::{Obstacle, Obstacles, Scene, Sensed, Surroundings, WithoutRobot};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{BaseLimits, MobileBase, Robot};
 use ikcore::shape::{Geometry, Shape};
@@ -37,10 +37,14 @@ fn coordinate(rng: &mut LazyRng) -> f64 {
     if rng.uniform() < 0.5 { (10.0 * x).round() / 10.0 } else { x }
 }
 
-/// Points around the robot, in the frame of its base.
-fn points(robot: &Robot, count: usize, rng: &mut LazyRng) -> Vec<[f64; 3]> {
-    let origin = robot.base().translation.vector;
-    (0..count).map(|_| std::array::from_fn(|k| origin[k] + coordinate(rng))).collect()
+/// Points around the robot, and around its tip at `q`.
+fn points(robot: &Robot, q: &[f64], count: usize, rng: &mut LazyRng) -> Vec<[f64; 3]> {
+    let middles = [(robot.base().translation.vector, 1.0), (robot.fk(q).unwrap().translation.vector, 0.25)];
+    let point = |i: usize| {
+        let (middle, reach) = middles[i % 2];
+        std::array::from_fn(|k| middle[k] + reach * coordinate(rng))
+    };
+    (0..count).map(point).collect()
 }
 
 fn clearance(robot: &Robot, q: &[f64], shape: Shape) -> f64 {
@@ -62,7 +66,7 @@ fn points_go_if_their_clearance_is_at_most_the_padding() {
         for case in 0..12 {
             let q = robot.random_configurations(1, &mut rng).unwrap();
             let (radius, padding) = ([0.0, 0.01, 0.05][case % 3], [0.0, 0.02, 0.1][case / 3 % 3]);
-            let all = points(&robot, 300, &mut rng);
+            let all = points(&robot, &q, 300, &mut rng);
             let cloud = Obstacle::from(Shape::point_cloud(all.clone(), radius).unwrap());
             let WithoutRobot { obstacle, removed } = cloud.without_robot(&robot, &q, padding).unwrap();
             let left = points_of(&obstacle.shape);
@@ -89,8 +93,8 @@ fn distances_from_what_is_left_are_those_of_a_new_cloud() {
     let mut rng = rng::stream(2, 0);
     for count in [1, 3, 4, 5, 16, 17, 200, 5000] {
         for _ in 0..8 {
-            let cloud = Obstacle::from(Shape::point_cloud(points(&robot, count, &mut rng), 0.01).unwrap());
             let q = robot.random_configurations(1, &mut rng).unwrap();
+            let cloud = Obstacle::from(Shape::point_cloud(points(&robot, &q, count, &mut rng), 0.01).unwrap());
             let left = cloud.without_robot(&robot, &q, 0.1).unwrap().obstacle;
             let anew = Shape::point_cloud(points_of(&left.shape).to_vec(), 0.01).unwrap();
             assert_eq!(left.shape, anew);
@@ -161,8 +165,8 @@ fn sensor_obstacles_are_known_by_their_contacts() {
     let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.06).unwrap();
     let cube = vec![true];
     let shapes = [
-        (Shape::point_cloud(vec![[0.0; 3]], 0.1), Some(Measured::PointCloud)),
-        (Shape::grid([0.0; 3], 0.1, [1; 3], cube), Some(Measured::Grid)),
+        (Shape::point_cloud(vec![[0.0; 3]], 0.1), Some(Sensed::PointCloud)),
+        (Shape::grid([0.0; 3], 0.1, [1; 3], cube), Some(Sensed::Grid)),
         (Shape::sphere([0.0; 3], 0.1), None),
     ];
     for (shape, kind) in shapes {

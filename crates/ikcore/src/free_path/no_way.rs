@@ -1,13 +1,13 @@
 //! Reasons why there is no clear motion: a blocked end, or the gap left by the search.
 
 use super::end_pair::EndPair;
-use crate::obstacle::{Contact, Measured, Scene};
+use crate::obstacle::{Contact, Scene, Sensed};
 use crate::wording::number;
 
 /// Names the obstruction where none of `pairs` has two clear ends, which keep `kept` (m) from everything.
 ///
 /// Also returns what was measured of the robot itself, if that blocks the start.
-pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> (String, Option<Measured>) {
+pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> (String, Option<Sensed>) {
     let is_clear = |q: &[f64]| scene.is_clear(q, kept);
     let start_is_blocked = !pairs.iter().any(|pair| is_clear(&pair.start));
     let name = if start_is_blocked { "start" } else { "end" };

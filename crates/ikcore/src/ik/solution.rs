@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::message::{Message, message};
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, Clearance, Measured, Surroundings, clear_in_words};
+use crate::obstacle::{ClearSpace, Clearance, Sensed, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
@@ -33,7 +33,7 @@ pub struct SolveReport {
     /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
     /// What was measured of the robot itself, if that keeps the solution in collision.
-    pub own_points: Option<Measured>,
+    pub own_points: Option<Sensed>,
     /// Nearest two bodies, if obstacles or self-collision were checked; `None` while deferred by
     /// [`SolveOptions::nearest_later`](super::SolveOptions).
     pub nearest: Option<Box<Nearest>>,

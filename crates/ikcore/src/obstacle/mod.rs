@@ -59,7 +59,7 @@ pub use joint_motion::{Edge, JointMotion};
 pub(crate) use motion_certificate::MotionCertificate;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::{Obstacle, Obstacles};
-pub use own_points::Measured;
+pub use own_points::Sensed;
 pub(crate) use required_distance::RequiredDistance;
 pub use sampled_line::SampledLine;
 pub use scene::{Scene, SceneRobot};

@@ -8,14 +8,14 @@ use crate::message::{Message, Setting, message};
 /// Kind of obstacle that a sensor measures. A robot that is inside one at its own configuration has probably been measured
 /// itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Measured {
+pub enum Sensed {
     /// Point cloud.
     PointCloud,
     /// Occupancy grid.
     Grid,
 }
 
-impl Measured {
+impl Sensed {
     /// Advice to take the robot's own points out, as a part of a sentence.
     pub(crate) fn advice(self) -> Message {
         match self {
@@ -35,10 +35,10 @@ impl Measured {
 
 impl Contact {
     /// The kind of the other body, if a sensor measures it.
-    pub fn measured(&self) -> Option<Measured> {
+    pub fn measured(&self) -> Option<Sensed> {
         match &self.other {
-            Neighbor::Obstacle(_, name) if name == "PointCloud" => Some(Measured::PointCloud),
-            Neighbor::Obstacle(_, name) if name == "Grid" => Some(Measured::Grid),
+            Neighbor::Obstacle(_, name) if name == "PointCloud" => Some(Sensed::PointCloud),
+            Neighbor::Obstacle(_, name) if name == "Grid" => Some(Sensed::Grid),
             _ => None,
         }
     }

@@ -23,7 +23,7 @@ impl Obstacle {
     /// ball about it, as in [`Scene::clearance`].
     ///
     /// # Errors
-    /// Those of [`Scene::new`] for a robot without bodies; [`Error::WrongLength`], [`Error::NotFinite`];
+    /// [`Error::NoCapsules`] for a robot without bodies; [`Error::WrongLength`], [`Error::NotFinite`];
     /// [`Error::OutOfRange`] for a padding that is negative or not finite; [`Error::InvalidObstacle`] for another shape;
     /// [`Error::Interrupted`].
     pub fn without_robot(&self, robot: &Robot, q: &[f64], padding: f64) -> Result<WithoutRobot> {

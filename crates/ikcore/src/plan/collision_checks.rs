@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use super::endpoint::EndName;
 use super::planar_arm::PlanarArm;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
@@ -15,6 +14,9 @@ use crate::trajectory::{Coefficients, POWERS, Trajectory};
 
 /// Distance added to the margin at end configurations (m), so that motions to them can be certified.
 pub(crate) const END_RESERVE: f64 = 2e-6;
+
+/// Name of the start in errors.
+const START: &str = "start";
 
 /// The space that `surroundings` leave to a motion of `robot` from point to point; `None` if nothing can collide: without obstacles,
 /// by default, an arm without bodies cannot.
@@ -48,7 +50,7 @@ pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) ->
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));
             // The robot is at the start, perhaps not at an end.
-            let remedy = match contact.measured().filter(|_| what == EndName::Start.of_target()) {
+            let remedy = match contact.measured().filter(|_| what == START) {
                 Some(measured) => message!["; ", measured.advice()],
                 None if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) => message!["; ", contact.remedy()],
                 None => Message::default(),

@@ -10,7 +10,7 @@ use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
 use crate::limits::JointOutside;
 use crate::message::{Message, Setting, message};
-use crate::obstacle::{Clearance, ClearanceSweep, Measured, Surroundings, clear_in_words};
+use crate::obstacle::{Clearance, ClearanceSweep, Sensed, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
@@ -36,7 +36,7 @@ pub struct Plan {
     /// Why no clear motion was found, if that is so.
     pub obstruction: Option<String>,
     /// What was measured of the robot itself, if that is the obstruction.
-    pub own_points: Option<Measured>,
+    pub own_points: Option<Sensed>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
     /// Joints that begin outside their limits, and are led inside.

@@ -11,7 +11,7 @@ use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, JointOutside, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::message::{Message, Setting, message};
-use crate::obstacle::Measured;
+use crate::obstacle::Sensed;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
@@ -63,7 +63,7 @@ pub struct Record {
     /// Status of the whole track.
     pub status: Status,
     /// What was measured of the robot itself, if the arm was in collision with it.
-    pub own_points: Option<Measured>,
+    pub own_points: Option<Sensed>,
     /// Time taken.
     pub elapsed: Duration,
     /// Approach at the start, if requested.
@@ -119,7 +119,7 @@ pub(super) struct Accepted<'a> {
     /// Smallest distance from obstacles and between links (m).
     pub clearance: f64,
     /// The kind of the nearest obstacle, if a sensor measures it.
-    pub measured: Option<Measured>,
+    pub measured: Option<Sensed>,
 }
 
 impl Record {
@@ -381,7 +381,7 @@ impl Record {
             0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
             _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
         };
-        let advice = self.own_points.map_or_else(|| status.advice(), Measured::advice);
+        let advice = self.own_points.map_or_else(|| status.advice(), Sensed::advice);
         message![format!("in {} steps {phrase}: ", count(status)), advice]
     }
 

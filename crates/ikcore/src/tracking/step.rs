@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::away::{Away, Way};
 use crate::limits::JointOutside;
 use crate::message::{Message, message};
-use crate::obstacle::{Contact, Measured};
+use crate::obstacle::{Contact, Sensed};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -43,7 +43,7 @@ impl Step {
     /// probably in it itself.
     pub fn advice_near(&self, nearest: &Contact) -> Message {
         let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
-        measured.map_or_else(|| self.status.advice(), Measured::advice)
+        measured.map_or_else(|| self.status.advice(), Sensed::advice)
     }
 
     /// Returns [`message`](Self::message) with this `advice`, of an arm that began with the joints `outside` their limits.

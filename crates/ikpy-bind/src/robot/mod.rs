@@ -8,7 +8,8 @@ mod kinematics;
 mod manipulability;
 mod model;
 mod modified_copies;
+mod robot_class;
 
 pub use body::PyBody;
 pub use manipulability::PyVelocityEllipsoid;
-pub use model::PyRobot;
+pub use robot_class::PyRobot;

@@ -1,4 +1,4 @@
-//! `Robot`: the class and its properties.
+//! `Robot`: its properties.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use ikcore::nalgebra::{Matrix4, Vector3};
 use ikcore::robot::{Robot, Visual, VisualShape};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyDict, PyString, PyTuple};
 
 use super::body::PyBody;
+use super::robot_class::PyRobot;
 use crate::convert::{copied, counted, matrix4_array, row};
 use crate::error::{misfit, raise};
 use crate::hash::content_hash;
@@ -19,7 +19,6 @@ use crate::monitor::on_a_thread;
 use crate::obstacle::wrapped;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
-use crate::tip_keys::TipKeys;
 
 /// Capsule of a link: (link, a (3,), b (3,), radius (m)).
 type Capsule<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, f64);
@@ -37,34 +36,6 @@ fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'
     };
     let color = visual.color.map(|color| copied(py, &color));
     Ok((visual.link.clone(), shape, matrix4_array(py, &placement)?, color))
-}
-
-/// A robot: the chain of joints from a base link to a tip link, or several chains to several `tips`, and the links that branch off.
-/// Immutable; made by `from_urdf`, `from_dh`, `planar` or `named`.
-///
-/// A joint vector q holds the n independent joints in chain order (rad, m): with several tips one chain after another,
-/// shared joints once. Mimic joints follow their masters, and joints beside the chains are held. Poses are 4x4 matrices
-/// in the frame of the robot's base.
-#[pyclass(name = "Robot", module = "beetle_ik", frozen, eq)]
-pub struct PyRobot {
-    pub core: Arc<Robot>,
-    /// Limits as a Python object, made at the first access. They hold only numbers, so that no reference cycle passes
-    /// through them.
-    limits: PyOnceLock<Py<PyLimits>>,
-    /// Names of the tips, for results.
-    pub tips: TipKeys,
-}
-
-impl PartialEq for PyRobot {
-    fn eq(&self, other: &Self) -> bool {
-        self.core == other.core
-    }
-}
-
-impl From<Robot> for PyRobot {
-    fn from(robot: Robot) -> Self {
-        Self { tips: TipKeys::of(&robot), core: Arc::new(robot), limits: PyOnceLock::new() }
-    }
 }
 
 #[pymethods]

@@ -4,7 +4,7 @@ use super::passage::Passage;
 use super::postures::are_all;
 use super::sequence::Unreached;
 use crate::objective::Point;
-use crate::obstacle::{Blocked, ClearSpace, Contact, Measured, NearestContact};
+use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact, Sensed};
 
 /// Postures at the points of a path, clear or not.
 pub(super) struct Layers<'a> {
@@ -20,7 +20,7 @@ impl Layers<'_> {
         passage: &Passage<'_>,
         space: &ClearSpace<'_>,
         dead_end: Unreached,
-    ) -> (String, Option<Measured>) {
+    ) -> (String, Option<Sensed>) {
         let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.fractions[*i], q));
         match (0..self.fractions.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
@@ -41,7 +41,7 @@ impl Layers<'_> {
     }
 
     /// Names the obstruction at a point without a clear posture.
-    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> (String, Option<Measured>) {
+    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> (String, Option<Sensed>) {
         let tip_path = passage.problem.tip_path;
         let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
         let said = |contact: &Contact| contact.in_words(space.margin());

@@ -6,7 +6,7 @@ use crate::ik::first_branch::by_closed_form;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::solve_options::Prefer;
 use crate::objective::Point;
-use crate::obstacle::{Blocked, ClearSpace, Contact, Measured};
+use crate::obstacle::{Blocked, ClearSpace, Contact, Sensed};
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
@@ -49,7 +49,7 @@ pub(in crate::ik) fn made_clear<'p>(
 
 /// Returns what was measured of the robot itself, if a solution is in collision with it: the robot is in it at its `start`, or with
 /// a body that no joint moves.
-fn own_points(solution: &Solution, space: &ClearSpace<'_>, start: Option<&[f64]>) -> Option<Measured> {
+fn own_points(solution: &Solution, space: &ClearSpace<'_>, start: Option<&[f64]>) -> Option<Sensed> {
     if solution.status != Status::InCollision {
         return None;
     }
