@@ -13,6 +13,9 @@ use crate::wording::number;
 /// Distance out of reach that looks like millimetres (m), and as a multiple of the reach.
 const FAR: f64 = 30.0;
 
+/// Distance (m) beyond which a number is nobody's millimetres.
+const FARTHEST: f64 = 1e6;
+
 /// Multiple of the reach within which a position lies if it is in millimetres.
 const AS_MILLIMETRES: f64 = 3.0;
 
@@ -62,7 +65,7 @@ pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a S
         }
         if found.is_none() && radius.is_finite() {
             let distance = if ball.is_far(from_ball) { from_ball } else { ball.distance_of(shape) };
-            if ball.is_far(distance) && ball.holds_as_millimetres(&center, radius) {
+            if ball.is_far(distance) && distance < FARTHEST && ball.holds_as_millimetres(&center, radius) {
                 found = Some((number, shape.name(), distance + ball.radius));
             }
         }
@@ -83,7 +86,7 @@ pub fn of_sizes(robot: &Robot) -> Option<UnitDoubt> {
     let base = robot.link_names().next().unwrap_or_default();
     let large = robot.bodies().iter().filter(|body| body.link != base).find_map(|body| {
         let radius = body.shape.bounding_ball().radius;
-        (radius > LARGE_BODY[0].max(LARGE_BODY[1] * ball.radius) && radius < 1e6).then_some((body, radius))
+        (radius > LARGE_BODY[0].max(LARGE_BODY[1] * ball.radius) && radius < FARTHEST).then_some((body, radius))
     })?;
     let (body, radius) = large;
     let thing = format!("radius of a body of link '{}' ({})", body.link, body.source);
