@@ -221,7 +221,7 @@ ROWS: list[Row] = [
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, [np.nan, 0.0, 0.0]), 'target must be finite, but coordinate x is NaN'),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, 2.0 * np.eye(4)), 'target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)'),
-    ("solve_all", Invalid, lambda at: api.solve_all(UR5, UR5.fk(UR5_Q), turns=True, limits=WIDE), 'turns=True makes 33431918 configurations; at most 10000 are allowed: narrow the limits'),
+    ("solve_all", Invalid, lambda at: api.solve_all(UR5, UR5.fk(UR5_Q), turns=True, limits=WIDE), 'turns=True makes 132120576 configurations; at most 10000 are allowed: narrow the limits'),
     ("solve_all", Limit, lambda at: api.solve_all(PANDA, [0.4, 0.0, 0.5], start=BEYOND), f"start: joint 'panda_joint2' at 9 is {FAR_OUTSIDE}"),
     ("solve_batch", Invalid, lambda at: api.solve_batch(PANDA, np.eye(3)[None]), 'targets: expected poses (m, 4, 4) or positions (m, 3), got shape (1, 3, 3)'),
     ("solve_batch", Invalid, lambda at: api.solve_batch(PANDA, np.array([np.eye(4), np.full((4, 4), np.nan)])), 'row 1: target must be finite, but entry (0, 0) is NaN'),
