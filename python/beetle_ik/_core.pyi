@@ -1710,6 +1710,24 @@ def solve_all(
         (8, True)
     """
 
+def calibrate(
+    robot: Robot,
+    q: ArrayLike,
+    measured: ArrayLike,
+    *,
+    fit: Sequence[str] | None = None,
+    sigma: ArrayLike | None = None,
+    robust: bool = True,
+    camera: str | None = None,
+    board: ArrayLike | None = None,
+    lens: ArrayLike | None = None,
+    center: ArrayLike | None = None,
+    plane: ArrayLike | None = None,
+    suggest: int = 0,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    seed: int = 0,
+) -> Calibration: ...
 def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],
@@ -1838,6 +1856,77 @@ def map_chunks(
         the lowest first; then two arrays (x, y, z) float32 for the best configuration found, NaN where there is none,
         or None without `quality`.
     """
+
+@final
+class Calibration:
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def success(self) -> bool: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def deviations(self) -> dict[str, float]: ...
+    @property
+    def covariance(self) -> _Array: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def rms_before(self) -> float: ...
+    @property
+    def rms_placed(self) -> float: ...
+    @property
+    def rms_after(self) -> float: ...
+    @property
+    def rms_held_out(self) -> float: ...
+    @property
+    def rotation_rms_before(self) -> float: ...
+    @property
+    def rotation_rms_after(self) -> float: ...
+    @property
+    def rotation_rms_held_out(self) -> float: ...
+    @property
+    def errors_before(self) -> _Array: ...
+    @property
+    def errors_after(self) -> _Array: ...
+    @property
+    def outliers(self) -> list[int]: ...
+    @property
+    def sigma(self) -> tuple[float, float]: ...
+    @property
+    def identifiable(self) -> Identifiability: ...
+    @property
+    def base(self) -> _Array: ...
+    @property
+    def tool(self) -> _Array: ...
+    @property
+    def camera(self) -> _Array | None: ...
+    @property
+    def board(self) -> _Array | None: ...
+    @property
+    def center(self) -> _Array | None: ...
+    @property
+    def plane(self) -> _Array | None: ...
+    @property
+    def suggested(self) -> _Array: ...
+    @property
+    def iterations(self) -> int: ...
+    def to_urdf(self, path_or_xml: str | os.PathLike[str]) -> str: ...
+
+@final
+class Identifiability:
+    @property
+    def rank(self) -> int: ...
+    @property
+    def possible(self) -> int: ...
+    @property
+    def condition(self) -> float: ...
+    @property
+    def singular_values(self) -> _Array: ...
+    @property
+    def unknown(self) -> list[str]: ...
 
 @final
 class SelfMotion:
@@ -2888,7 +2977,11 @@ class Mesh(Obstacle):
 
 @final
 class PointCloud(Obstacle):
-    """A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m)."""
+    """A point cloud, for example from a depth camera: balls of one `radius` (m) about points (k, 3) (m). A cloud without points
+    touches nothing.
+
+    The robot is often in the picture: `without_robot` takes its own points out.
+    """
 
     def __new__(cls, points: ArrayLike, radius: float, *, touch: Sequence[str] | None = None) -> PointCloud: ...
     @property
@@ -2897,11 +2990,36 @@ class PointCloud(Obstacle):
     @property
     def radius(self) -> float:
         """Radius of the ball about each point (m)."""
+    @property
+    def removed(self) -> int:
+        """Number of the robot's own points that `without_robot` removed to make this cloud; 0 for other clouds, copies and
+        files.
+        """
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> PointCloud:
+        """Returns the cloud without the robot's own points: those whose ball is at most `padding` from a body of the robot.
+
+        All bodies count: those of the base, of held and branched-off links, and attached shapes (`robot.with_attached`). The
+        distance is that of `clearance`, so after this every body is more than `padding` from the cloud. `removed` of the new cloud
+        is the number of points that are gone.
+
+        Something that the robot touches or holds loses its points within `padding` too: attach what is in the hand.
+
+        Args:
+            robot: an arm with bodies.
+            q: joint positions (n,) at which the cloud was taken (rad, m).
+            padding: largest distance (m) of the robot's own points from its model: the noise of the sensor, and errors of model,
+                calibration and time.
+
+        Raises:
+            InvalidInputError: a robot without bodies, wrong joint positions, or a padding that is negative or not finite.
+        """
 
 @final
 class Grid(Obstacle):
     """An occupancy grid: cubic voxels with edges of `voxel` (m), the first with its lowest corner at `origin` (3,) (m).
-    `occupied` is a boolean array (nx, ny, nz).
+    `occupied` is a boolean array (nx, ny, nz). A grid without occupied voxels touches nothing.
+
+    The robot is often in what was measured: `without_robot` takes its own voxels out.
     """
 
     def __new__(
@@ -2916,6 +3034,23 @@ class Grid(Obstacle):
     @property
     def occupied(self) -> NDArray[np.bool_]:
         """Whether each voxel is occupied (nx, ny, nz)."""
+    @property
+    def removed(self) -> int:
+        """Number of the robot's own voxels that `without_robot` removed to make this grid; 0 for other grids, copies and files."""
+    def without_robot(self, robot: Robot, q: ArrayLike, *, padding: float = 0.02) -> Grid:
+        """Returns the grid without the robot's own voxels: those that are at most `padding` from a body of the robot.
+
+        All bodies count, as in `PointCloud.without_robot`. The distance is that of `clearance` from the voxel alone. `removed` of
+        the new grid is the number of voxels that are free now.
+
+        Args:
+            robot: an arm with bodies.
+            q: joint positions (n,) at which the grid was measured (rad, m).
+            padding: largest distance (m) of the robot's own voxels from its model.
+
+        Raises:
+            InvalidInputError: a robot without bodies, wrong joint positions, or a padding that is negative or not finite.
+        """
 
 @final
 class Body:
@@ -2933,9 +3068,9 @@ class Body:
 
 @final
 class PreparedObstacles:
-    """The obstacles of a `Scene`, read and prepared once."""
+    """The obstacles of a `Scene`, read and prepared once; `carried` are link and name of each body that the robot carries there."""
 
-    def __new__(cls, obstacles: Sequence[Obstacle]) -> PreparedObstacles: ...
+    def __new__(cls, obstacles: Sequence[Obstacle], carried: Sequence[Sequence[str]] = ()) -> PreparedObstacles: ...
 
 @final
 class Moving:
@@ -3150,6 +3285,7 @@ def time_optimal(
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
+    tolerance: float | ArrayLike | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
@@ -3169,15 +3305,20 @@ def time_optimal(
             no longer improves.
         start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
         joint_names: n names; None: "q1", "q2" and so on.
+        tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
+            parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
+            is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+
+    Equal consecutive rows, as a recording has at rest, are one waypoint.
 
     Returns:
-        A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
-        quintic segments that meet the path at their ends.
+        A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
+        points. With jerk limits it consists of quintic segments that meet the path at their ends.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+        InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
 
     For example:
 

@@ -14,7 +14,7 @@ import numpy as np
 from . import _core
 from .calls.arguments import require
 from .calls.text import counted
-from .figures import plan_figure, track_figure
+from .figures import calibration_figure, plan_figure, track_figure
 from .figures.joints import ROW_HEIGHT, draw_joints, legend_columns
 from .figures.shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
 from .figures.style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, new_figure, style
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped, unused-ignore]
     from numpy.typing import ArrayLike, NDArray
 
-    from ._core import Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
+    from ._core import Calibration, Limits, ModelFreeResult, Obstacle, Plan, Robot, TrackResult, Trajectory
 
-__all__ = ["animation", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
+__all__ = ["animation", "calibration", "model_free", "plan", "robot", "saturation", "track", "trajectory"]
 
 # Colours of several tips, and of pairs of tips.
 _TIPS = (BLUE, GREEN, ORANGE)
@@ -199,3 +199,9 @@ def _slopes(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[n
     """Returns time derivatives by differences; the last one is repeated, so that each sample has one."""
     slopes = np.diff(values, axis=0) / np.diff(time)[:, None]
     return np.vstack((slopes, slopes[-1:]))
+
+
+def calibration(result: Calibration) -> Figure:
+    """Draws the errors of a calibration before and after, by measurement and as a distribution."""
+    require("result", result, _core.Calibration)
+    return calibration_figure.draw(result)

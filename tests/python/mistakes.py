@@ -8,8 +8,10 @@ import beetle_ik as bik
 
 Invalid, Limit, Urdf, Unknown = bik.InvalidInputError, bik.LimitError, bik.UrdfError, bik.UnknownNameError
 # What can be done about a position outside its limits.
-RADIANS = ": angles are in radians; np.radians converts degrees"
-INSIDE = ": move it inside, such as by np.clip"
+RADIANS = "move it inside; angles are in radians, and np.radians converts degrees"
+TURNED = "robot.wrap(q) takes whole turns off and brings it inside"
+INSIDE = "robot.clip(q) moves it to the limit, which changes the pose"
+SLACK = f"{INSIDE}; start_slack takes a start farther out"
 Case = tuple[Callable[[], object], type[Exception], str]
 
 

@@ -18,7 +18,7 @@ from campaign import attack, ledger, shrinking, soak, watch
 from campaign.attacks import ATTACKS
 from rough_attack import Rough
 
-ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra"}
+ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra", "equalities": "mujoco"}
 CASES = {
     "clear_ticks": 1,
     "clear_plans": 2,
@@ -66,6 +66,10 @@ SPOILED = {
         "a configuration of the curve misses the target",
     ),
     "paths_followed": ("plan = Changed(plan, accuracy=-1.0)", "the plan is farther from the path than it says"),
+    "starts_as_read": (
+        "tracked = [q + 0.3 * (i == 5) for i, q in enumerate(tracked)]",
+        "a tick exceeds the velocity limit on the way inside",
+    ),
     "plants": ("found = Changed(found, q=10.0 * found.q)", "the velocity is beyond its limit"),
     "poses": (
         "poses = poses + 1e-9",
@@ -78,6 +82,10 @@ SPOILED = {
     "round_poses": (
         "statuses = np.full(len(poses), bik.Status.OUT_OF_REACH)",
         "a pose that the arm has is called out of reach",
+    ),
+    "calibrations": (
+        "found = Changed(found, errors_after=found.errors_after + 1e-3)",
+        "the errors after are not as told",
     ),
     "out_of_reach": (
         "solution = Changed(solution, q=solution.q * nan)",
@@ -145,9 +153,21 @@ SPOILED = {
         "ways = [(*way[:3], way[3] + 1e-3, way[4]) for way in ways]",
         "the clearance of a tick is above the true one",
     ),
+    "own_points": (
+        "kept = kept[1:]\nremoved += 1",
+        "a point is kept, or taken out, against the padding",
+    ),
     "urdf": (
         "pose = pose * nan",
         "a robot was read whose poses are not finite",
+    ),
+    "equalities": (
+        "tips = tips + 0.01",
+        "an equality of the chain is open",
+    ),
+    "file_speeds": (
+        "tick_refusal = ''",
+        "a tracker does not name a joint that nothing slows down",
     ),
     "scene_json": (
         "again = bik.Scene()",

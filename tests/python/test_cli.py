@@ -28,6 +28,7 @@ CIRCLE = [
     "4e-5",
 ]
 TRACK = ["track", "planar5", *CIRCLE]
+FREE = ["--velocity-limit", "inf"]  # planar5 has no velocity limits of its own
 FILES = {"trajectory.csv", "trajectory.npz", "track.png", "summary.json"}
 
 
@@ -119,7 +120,7 @@ def test_a_budget_of_evaluations_is_kept() -> None:
 
 
 def test_one_step_is_no_plural() -> None:
-    assert "planar5, 1 step of 0.2 s: " in run(*TRACK, "--duration", "0.2").stdout
+    assert "planar5, 1 step of 0.2 s: " in run(*TRACK, *FREE, "--duration", "0.2").stdout
 
 
 def test_version_is_printed() -> None:
@@ -173,18 +174,18 @@ def test_track_keeps_accelerations(tmp_path: Path) -> None:
 
 def test_track_repeats_bit_for_bit(tmp_path: Path) -> None:
     for folder in ("first", "second"):
-        assert run(*TRACK, "--seed", "3", "--out", str(tmp_path / folder)).exit_code == 0
+        assert run(*TRACK, *FREE, "--seed", "3", "--out", str(tmp_path / folder)).exit_code == 0
     for name in ("trajectory.csv", "trajectory.npz"):
         assert (tmp_path / "first" / name).read_bytes() == (tmp_path / "second" / name).read_bytes()
 
 
 @pytest.mark.parametrize("solver", ["bas", "chain", "greedy", "lm"])
 def test_every_solver_tracks(solver: str) -> None:
-    assert run_json(*TRACK, "--solver", solver)["solver"] == solver
+    assert run_json(*TRACK, *FREE, "--solver", solver)["solver"] == solver
 
 
 def test_without_a_solver_the_library_chooses() -> None:
-    summary = run_json(*TRACK)
+    summary = run_json(*TRACK, *FREE)
     assert summary["solver"] == "model-based"
     assert summary["evaluations"] < 3 * summary["steps"]
 
@@ -192,8 +193,17 @@ def test_without_a_solver_the_library_chooses() -> None:
 @pytest.mark.parametrize("curve", ["circle", "hypotrochoid", "letter-m", "pentagram", "rose"])
 @pytest.mark.parametrize("robot", bik.Robot.names())
 def test_every_arm_follows_every_curve_as_it_is_placed_for_it(robot: str, curve: str) -> None:
-    result = run("track", robot, "--curve", curve)
+    own = np.isfinite(bik.Robot.named(robot).velocity_limit).all()
+    result = run("track", robot, "--curve", curve, *([] if own else FREE))
     assert result.exit_code == 0, result.output
+
+
+def test_an_arm_without_speeds_is_told_the_option() -> None:
+    joints = ", ".join(f"'joint_{i}'" for i in range(1, 6))
+    assert refused(*TRACK) == (
+        f"Error: joints {joints} have neither a velocity nor an acceleration limit, so that nothing sets their pace: "
+        "give --velocity-limit, infinite where a joint may jump to any position in one tick"
+    )
 
 
 def test_a_limit_above_the_real_arm_is_told() -> None:
@@ -208,8 +218,8 @@ def test_a_path_file_may_have_times_or_a_duration(tmp_path: Path) -> None:
     timed, untimed = tmp_path / "timed.csv", tmp_path / "untimed.csv"
     timed.write_text("time,x,y,z\n0,4,1,0\n2,4,0.9,0\n")
     untimed.write_text("x,y,z\n4,1,0\n4,0.9,0\n")
-    assert run_json("track", "planar5", "--path", str(timed))["steps"] == 10
-    assert run_json("track", "planar5", "--path", str(untimed), "--duration", "4")["steps"] == 20
+    assert run_json("track", "planar5", "--path", str(timed), *FREE)["steps"] == 10
+    assert run_json("track", "planar5", "--path", str(untimed), "--duration", "4", *FREE)["steps"] == 20
     assert refused("track", "planar5", "--path", str(timed), "--duration", "4") == (
         f"Error: --duration: '{timed}' has a column 'time', which sets the duration; leave one of them out"
     )
@@ -302,7 +312,7 @@ def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.M
         raise OSError("disk full")
 
     monkeypatch.setattr("beetle_ik.cli.track.write_files", fail_half_way)
-    assert refused(*TRACK, "--out", str(tmp_path / "new" / "results")) == "Error: disk full"
+    assert refused(*TRACK, *FREE, "--out", str(tmp_path / "new" / "results")) == "Error: disk full"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -323,7 +333,7 @@ def test_ctrl_c_is_told_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_the_module_runs_and_a_pipe_gets_no_progress_bar() -> None:
-    command = [sys.executable, "-m", "beetle_ik", *TRACK]
+    command = [sys.executable, "-m", "beetle_ik", *TRACK, *FREE]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "mean position error [m]" in done.stdout

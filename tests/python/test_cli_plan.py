@@ -55,3 +55,15 @@ def test_a_plan_ends_with_a_straight_line() -> None:
     refused = plan("panda", *ends[:2], "--approach=-0.1")
     assert refused.exit_code == 2
     assert "distance of approach must be positive and finite, got -0.1" in refused.stderr
+
+
+def test_a_start_in_a_cloud_of_a_scene_names_the_remedy(scene: Path) -> None:
+    start = [0.0, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8]
+    hand = bik.Robot.named("panda").fk(start)[:3, 3]
+    bik.Scene([bik.obstacles.PointCloud([hand], 0.01)]).save(scene)
+    ends = ["--start-q=0,0.3,0,-1.5,0,1.8,0.8", "--end-q=0.5,0.3,0,-1.5,0,1.8,0.8"]
+    refused = plan("panda", *ends, "--scene", str(scene), "--link-radius", "0.05")
+    assert refused.exit_code == 2
+    assert refused.stderr.strip().endswith(
+        "the robot's own points may be in the cloud, and PointCloud.without_robot in Python takes them out"
+    )

@@ -54,6 +54,11 @@ WORDS = {
     "end_speed": "speed at the end",
     "qd": "velocity samples",
     "qdd": "accelerations",
+    "measured": "measurements?|pose \\d+",
+    "sigma": "standard deviation",
+    "center": "centre",
+    "suggest": "suggested",
+    "fit": "part of a calibration|fitted",
 }
 
 URDF = """<robot name="r"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">
@@ -62,6 +67,7 @@ MJCF = """<mujoco><worldbody><body name="base"><body name="tip"><joint/><geom si
 </mujoco>"""
 ARM = IIWA.with_capsules(radius=0.05)
 PLANAR = bik.Robot.planar([1, 1, 1])
+ONE_JOINT = bik.Robot.from_urdf(URDF)
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
@@ -77,6 +83,10 @@ VIEWER = bik.view(ARM, port=0)
 FLAT = PLANAR.with_capsules(radius=0.05)
 MAP = bik.reachability(FLAT, voxel=0.5, rolls=2)
 
+TURNS = np.linspace(0.0, 3.0, 9)[:, None]
+MEASURED_Q = PLANAR.random_configurations(20)
+CALIBRATION = bik.calibrate(PLANAR, MEASURED_Q, PLANAR.fk(MEASURED_Q))
+
 # What a call needs besides the argument that is wrong; "." stands for the instance that a method is called on.
 NEEDED: dict[str, dict[str, Any]] = {
     "ControlSession.command": {".": IDLE, "target": (0.3, 0.3, 1.0)},
@@ -86,6 +96,8 @@ NEEDED: dict[str, dict[str, Any]] = {
     "KinematicPlant.move": {".": bik.KinematicPlant(ARM), "q": START},
     "ModelFreeResult.": {".": MODEL_FREE},
     "MultiStart": {"solver": bik.papers.BAS()},
+    "Calibration.": {".": CALIBRATION},
+    "Calibration.to_urdf": {".": bik.calibrate(ONE_JOINT, TURNS, ONE_JOINT.fk(TURNS)), "path_or_xml": URDF},
     "Path.": {".": LINE},
     "Path.pose": {".": LINE.with_orientation(np.eye(3)), "t": 0.0},
     "Path.position": {"t": 0.0},
@@ -120,7 +132,9 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.with_srdf": {"path_or_xml": "<robot/>"},
     "Robot.with_tool": {"tool": np.eye(4)},
     "Scene.": {".": bik.Scene()},
+    "Scene.attach_to": {"robot": ARM},
     "Scene.from_moveit": {"file": "scene.yaml"},
+    "Scene.from_octomap": {"file": "map.bt"},
     "Scene.from_trimesh": {"geometry": SimpleNamespace(vertices=np.eye(3), faces=[[0, 1, 2]], is_watertight=False)},
     "Scene.load": {"file": "scene.json"},
     "Scene.save": {"file": "saved.json"},
@@ -149,9 +163,12 @@ NEEDED: dict[str, dict[str, Any]] = {
     "distributed.reachability": {"client": None, "robot": FLAT, "voxel": 1.0, "threads": 1},
     "distributed.solve_batch": {"client": None, "robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
     "best_base": {"robot": FLAT, "targets": FLAT.fk([[0.1, 0.2, 0.3]]), "region": [(-1, -1, 0), (1, 1, 0)], "map": MAP},
+    "calibrate": {"robot": FLAT, "q": MEASURED_Q, "measured": PLANAR.fk(MEASURED_Q)},
     "filters.LowPass": {"cutoff": 5.0},
     "goals.Posture": {"posture": START},
     "minimize": {"function": np.sum, "lower": [-1, -1], "upper": [1, 1], "solver": bik.papers.BAS(), **QUICK},
+    "obstacles.Grid.without_robot": {".": bik.obstacles.Grid((9, 9, 9), 0.1, [[[True]]]), "robot": ARM, "q": START},
+    "obstacles.PointCloud.without_robot": {".": bik.obstacles.PointCloud([(9, 9, 9)], 0.1), "robot": ARM, "q": START},
     "obstacles.Box": {"center": (0, 0, 0), "size": (1, 1, 1)},
     "obstacles.Capsule": {"a": (0, 0, 0), "b": (1, 0, 0), "radius": 0.1},
     "obstacles.ConvexMesh": {"points": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]},
@@ -179,6 +196,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
     "papers.planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.papers.CircleSwarm()},
     "plot.animation": {"result": PLAN},
+    "plot.calibration": {"result": CALIBRATION},
     "plot.model_free": {"result": MODEL_FREE},
     "plot.plan": {"plan": PLAN},
     "plot.robot": {"robot": ARM, "q": START},
@@ -233,7 +251,9 @@ MADE_BY_THE_LIBRARY = [
     "BatchPlan",
     "BatchSolution",
     "Body",
+    "Calibration",
     "ControlSession",
+    "Identifiability",
     "InverseReachabilityMap",
     "Minimum",
     "ModelFreeResult",
@@ -274,6 +294,7 @@ def _with_one_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     MAP.to_npz("reached.npz")
     bik.Scene().save("scene.json")
     Path("scene.yaml").write_text("world: {}")
+    Path("map.bt").write_text("# Octomap OcTree binary file\nid OcTree\nsize 0\nres 0.1\ndata\n")
 
 
 def refusal(call: Callable[..., object], arguments: dict[str, Any]) -> str | None:

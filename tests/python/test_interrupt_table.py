@@ -89,6 +89,7 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "ReachabilityMap.query": lambda: posed_query(1_000_000),
         "best_base": lambda: lambda: bik.best_base(UR5, UR5.fk(rows(1, 6)), region=[(-1, -1, 0), (1, 1, 0)]),
         "reachability": lambda: lambda: bik.reachability(UR5, voxel=0.02, directions=200, threads=2),
+        "calibrate": lambda: measured(60_000),
         "minimize": lambda: (
             lambda: bik.minimize(np.sum, [-1] * 9, [1] * 9, solver=bik.papers.PSO(stall_generations=None), stop=ENDLESS)
         ),
@@ -96,6 +97,8 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "obstacles.Grid": lambda: occupied(300),
         "obstacles.Mesh": lambda: soup(1_000_000),
         "obstacles.PointCloud": lambda: cloud(3_000_000),
+        "obstacles.PointCloud.without_robot": lambda: without_robot(cloud(1_000_000)()),
+        "obstacles.Grid.without_robot": lambda: without_robot(occupied(200)()),
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
@@ -159,6 +162,12 @@ def with_times(call: Callable[[np.ndarray], object], count: int = 3_000_000) -> 
     return lambda: call(t)
 
 
+def measured(count: int) -> Callable[[], object]:
+    q = IIWA.random_configurations(count)
+    poses = IIWA.fk(q)
+    return lambda: bik.calibrate(IIWA, q, poses)
+
+
 def with_text(text: str) -> Callable[[], object]:
     return lambda: bik.Robot.from_urdf(text)
 
@@ -208,6 +217,10 @@ def soup(count: int) -> Callable[[], object]:
 def cloud(count: int) -> Callable[[], object]:
     points = np.random.default_rng(0).random((count, 3))
     return lambda: bik.obstacles.PointCloud(points, 0.01)
+
+
+def without_robot(seen: object) -> Callable[[], object]:
+    return lambda: [seen.without_robot(CAPSULES, np.zeros(CAPSULES.dof), padding=1.0) for _ in range(20)]
 
 
 def posed(count: int) -> Callable[[], object]:
@@ -266,6 +279,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
+    "Calibration.to_urdf": "reads a text once, as from_urdf",
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(
         ["ReachabilityMap.load", "ReachabilityMap.to_npz", "Trajectory", "Trajectory.then", "Trajectory.to_npz",
@@ -275,9 +289,10 @@ SHORT: dict[str, str] = {
     **dict.fromkeys(
         [
             "Robot.from_mjcf", "Robot.from_description", "Scene", "Scene.load", "Scene.save", "Scene.from_moveit",
-            "Scene.from_trimesh",
+            "Scene.from_trimesh", "Scene.from_octomap", "Scene.attach_to",
             "ModelFreeResult.plot", "Plan.plot", "TrackResult.plot", "Trajectory.plot", "Trajectory.to_csv",
-            "Trajectory.from_csv", "plot.animation", "plot.model_free", "plot.plan", "plot.robot", "plot.saturation",
+            "Trajectory.from_csv", "plot.animation", "plot.calibration", "plot.model_free", "plot.plan", "plot.robot",
+            "plot.saturation",
             "plot.track", "plot.trajectory",
         ],
         PYTHON,

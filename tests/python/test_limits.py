@@ -73,7 +73,9 @@ def test_a_function_is_a_velocity_limit(per_joint: bool) -> None:
 
 def test_functions_are_position_limits() -> None:
     closing = bik.Limits(
-        lower=lambda t: -np.pi + 0.1 * t, upper=lambda t: np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * t
+        lower=lambda t: -np.pi + 0.1 * t,
+        upper=lambda t: np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * t,
+        velocity=np.inf,
     )
     result = track(closing, solver=bik.papers.BAS(variant="chain"))
     upper = np.array([1.0, 0.5, 0.5, 0.5, 1.0]) - 0.02 * result.time[:, None]
@@ -141,7 +143,7 @@ def test_a_single_configuration_has_no_motion_to_limit(field: str) -> None:
 
 @pytest.mark.parametrize("field", ["acceleration", "jerk"])
 def test_switching_off_what_is_not_kept_is_fine(field: str) -> None:
-    assert track(bik.Limits(**{field: np.inf})).success
+    assert track(bik.Limits(velocity=np.inf, **{field: np.inf})).success
 
 
 @pytest.mark.parametrize("upper", [bik.Sinusoid(mean=1.0, amplitude=0.1, angular_frequency=1.0), lambda t: 1.0 + t])

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mistakes import INSIDE, RADIANS, Invalid, Limit, Unknown, assert_told, told
+from mistakes import RADIANS, SLACK, Invalid, Limit, Unknown, assert_told, told
 from typer.testing import CliRunner
 
 import beetle_ik as bik
@@ -143,14 +143,14 @@ SOLVERS = (
             "joint angles of robot 'panda': expected 7 joints (panda_joint1 to panda_joint7), got 9",
         ),
         (
-            lambda: bik.solve(PANDA, TARGET, start=np.zeros(7)),
+            lambda: bik.Tracker(PANDA, np.full(7, -0.3), dt=0.01),
             Limit,
-            f"start: joint 'panda_joint4' at 0 is outside its limits [-3.0718, -0.0698]{INSIDE}",
+            f"start: joint 'panda_joint6' at -0.3 is outside its limits [-0.0175, 3.7525] by 0.2825 rad: {SLACK}",
         ),
         (
-            lambda: bik.solve(PANDA, TARGET, start=[0, -45, 0, -135, 0, 90, 45]),
+            lambda: bik.Tracker(PANDA, [0, -40, 0, -135, 0, 90, 45], dt=0.01),
             Limit,
-            f"start: joint 'panda_joint2' at -45 is outside its limits [-1.7628, 1.7628]{RADIANS}",
+            f"start: joint 'panda_joint2' at -40 is outside its limits [-1.7628, 1.7628] by 38.24 rad: {RADIANS}",
         ),
         (
             lambda: bik.reachability(PANDA, voxel_size=0.1),  # type: ignore[call-arg]
@@ -163,7 +163,7 @@ SOLVERS = (
             lambda: bik.Scene(obstacle=[]),  # type: ignore[call-arg]
             bik.CallError,
             "Scene() got an unexpected keyword argument 'obstacle' (did you mean 'obstacles'?); its arguments: "
-            "obstacles",
+            "obstacles, attached",
         ),
         (
             lambda: bik.view("panda"),  # type: ignore[arg-type]
@@ -209,7 +209,7 @@ def test_a_natural_mistake_is_told(call: object, error: type[Exception], message
         ),
         (
             '{"obstacle": [], "obstacles": []}',
-            "unknown key 'obstacle' (did you mean 'obstacles'?); keys: \"version\", \"obstacles\"",
+            'unknown key \'obstacle\' (did you mean \'obstacles\'?); keys: "version", "obstacles", "attached"',
         ),
         (
             '[\n  {"type": "sphere", "center": [0, 0, 0], "radius": 0.1},\n]',

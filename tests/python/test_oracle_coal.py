@@ -141,6 +141,28 @@ def test_bodies_of_any_shape_are_as_far_as_coal_says(
     assert compared > 20
 
 
+@pytest.mark.parametrize("own", SOLIDS)
+def test_points_near_bodies_go_where_coal_finds_them_near(
+    own: Callable[..., tuple[bik.obstacles.Obstacle, object]],
+) -> None:
+    rng = np.random.default_rng(5)
+    counts = np.zeros(2, int)
+    for _ in range(20):
+        center, size, turn = random_place(rng)
+        body, model = own(center - PLACE, size, turn)
+        radius, padding = rng.choice([0.001, 0.01]), rng.choice([0.0, 0.02, 0.1])
+        points = center + rng.uniform(-0.5, 0.5, (200, 3))
+        cloud = bik.obstacles.PointCloud(points, radius)
+        left = cloud.without_robot(ARM.with_attached(LINK, body), [0.0], padding=padding)
+        ball, place = coal.Sphere(radius), coal.Transform3s(turn, center)
+        exact = np.array([apart(ball, coal.Transform3s(np.eye(3), p), model, place) for p in points])
+        kept = (points[:, None] == left.points[None]).all(axis=2).any(axis=1)
+        clearly = np.abs(exact - padding) > 1e-6
+        np.testing.assert_array_equal(kept[clearly], exact[clearly] > padding)
+        counts += [left.removed, len(left.points)]
+    assert counts.min() > 200
+
+
 @pytest.mark.parametrize("other", [capsule, *SOLIDS])
 @pytest.mark.parametrize("own", SOLIDS)
 def test_bodies_of_two_links_are_as_far_apart_as_coal_says(

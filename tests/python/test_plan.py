@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mistakes import INSIDE
+from mistakes import TURNED
 from typer.testing import CliRunner, Result
 
 import beetle_ik as bik
@@ -149,7 +149,8 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: between(start=None, start_q=[0, 0, 4]),
-        f"start: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793]{INSIDE}",
+        f"start: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793] by 0.8584 rad: "
+        f"{TURNED}",
     ),
     (lambda: between(start=None, start_q=[0, 0]), "start_q of robot 'planar3': expected 3 joints, got 2"),
     (lambda: between(limits=None), f"velocity limit of joint 'joint_1' must be {NOT_FINITE}, got inf"),

@@ -88,7 +88,7 @@ def test_an_open_mesh_is_said_to_be_open() -> None:
     sheet = bik.obstacles.Mesh([[2, 0, 0], [2, 1, 0], [2, 0, 1]], [[0, 1, 2]])
     plan = bik.plan_along_path(ARM, PATH, limits=LIMITS, obstacles=[sheet], self_collision=False)
     assert plan.success
-    assert "m clear of everything; the mesh of obstacle 0 is open, so that its inside is unknown" in plan.message
+    assert "m clear of all surfaces; the mesh of obstacle 0 is open, so that its inside is unknown" in plan.message
 
 
 def test_shapes_that_are_not_finite_are_refused() -> None:

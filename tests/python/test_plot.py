@@ -185,7 +185,7 @@ def test_a_tracked_pose_shows_its_rotation_error() -> None:
 
 
 def test_many_joints_keep_the_layout() -> None:
-    robot = bik.Robot.planar([0.2] * 24)
+    robot = bik.Robot.planar([0.2] * 24, velocity=5.0)
     result = bik.track(robot, bik.paths.circle((2.0, 1.0, 0.0), diameter=0.4, duration=0.4), dt=0.2)
     for figure in (result.plot(), result.trajectory.plot()):
         figure.get_layout_engine().execute(figure)

@@ -51,6 +51,10 @@ MIMIC = bik.Robot.from_urdf(
 )
 Q = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
 UR5_Q = np.array([0.3, -1.2, 1.4, -0.8, -1.1, 0.5])
+MEASURED_Q = UR5.random_configurations(40, seed=1)
+MEASURED = UR5.fk(MEASURED_Q)[:, :3, 3]
+ONE_Q = HELD.random_configurations(10, seed=1)
+CALIBRATED = bik.calibrate(HELD, ONE_Q, HELD.fk(ONE_Q))
 BEYOND, EDGE, ONWARD = Q + 9.5 * np.eye(7)[1], Q + 2.89 * np.eye(7)[0], np.eye(7)[0]
 BALL = bik.obstacles.Sphere((2.0, 0.0, 0.0), 0.1)
 RATED = bik.Limits(velocity=1.0, acceleration=2.0)
@@ -70,7 +74,7 @@ NO_CAPSULES = (
     'has no capsules, so that nothing is known of the room it takes up: load its URDF with collision="fit", or give it '
     "capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])"
 )
-FAR_OUTSIDE = "outside its limits [-1.7628, 1.7628]: angles are in radians; np.radians converts degrees"
+FAR_OUTSIDE = "outside its limits [-1.7628, 1.7628] by 7.237 rad: move it inside; angles are in radians, and np.radians converts degrees"
 
 
 def half_square(x: np.ndarray) -> float:
@@ -150,17 +154,27 @@ ROWS: list[Row] = [
     ("Robot.named", Unknown, lambda at: api.Robot.named("pnda"), "no robot is named 'pnda' (did you mean 'panda'?); known robots: fr3, gen3, hydraulic3, iiwa14, iiwa7, kr210, kr210_yuan2016, panda, planar5, ur10, ur10e, ur3e, ur5, ur5e"),
     ("Robot.fk", Unknown, lambda at: PANDA.fk(Q, link="hnd"), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Robot.jacobian", Unknown, lambda at: PANDA.jacobian(Q, link="hnd"), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
+    ("Robot.wrap", Limit, lambda at: PANDA.wrap([0.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0]), "q: joint 'panda_joint4' at 0.5 is outside its limits [-3.0718, -0.0698] by 0.5698 rad: no whole turn brings it inside, the nearest is 0.5698 rad beyond; robot.clip(q) moves it to the limit, which changes the pose"),
+    ("Robot.q_from", Unknown, lambda at: UR5.q_from({"elbow": 1.0}), f"robot 'ur5e' has no joint 'elbow' in q; its joints: {', '.join(UR5.joint_names)}; ignore_extra=True leaves out values of other joints"),
+    ("Robot.q_from", Invalid, lambda at: UR5.q_from(UR5.joint_names, [0.0]), "values: expected shape (6,) or (m, 6), one per name, got (1,)"),
     ("Robot.with_held", Unknown, lambda at: HELD.with_held({"finger_joint1": 0.0}), "robot 'held' holds no joint 'finger_joint1'; joints that it holds: side"),
-    ("Robot.with_held", Limit, lambda at: HELD.with_held({"side": 2.0}), "hold: joint 'side' at 2 is outside its limits [-1, 1]: move it inside, such as by np.clip"),
+    ("Robot.with_held", Limit, lambda at: HELD.with_held({"side": 2.0}), "hold: joint 'side' at 2 is outside its limits [-1, 1] by 1.000 rad: move it inside"),
     ("Robot.with_attached", Unknown, lambda at: PANDA.with_attached("hnd", BALL), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Robot.with_collision_pairs", Unknown, lambda at: THICK.with_collision_pairs([("hnd", "link_1")]), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Robot.with_capsules", Unknown, lambda at: PANDA.with_capsules([("hnd", (0, 0, 0), (0, 0, 0.1), 0.05)]), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Robot.with_srdf", Urdf, lambda at: PANDA.with_srdf("<srdf/>"), 'SRDF line 1: the outermost element must be <robot>, found <srdf>'),
     ("Robot.with_srdf", Urdf, lambda at: PANDA.with_srdf(OTHERS_SRDF), "SRDF: it is for another robot: 'panda' has no two links that it disables, such as 'shoulder_link'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
     ("Scene", Invalid, lambda at: api.Scene([BALL, 1]), 'obstacle 1 must be made by bik.obstacles, such as Sphere or Box, got 1'),
+    ("Scene", Invalid, lambda at: api.Scene(attached=[("hand", BALL)]), "attached 0 must be (link, shape, touch, name), got ('hand', obstacles.Sphere([2.0, 0.0, 0.0], 0.1))"),
+    ("Scene.attach_to", Invalid, lambda at: api.Scene(attached=[("hnd", BALL, (), "part")]).attach_to(THICK), "attached object 'part': robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
+    ("Scene.from_octomap", Invalid, lambda at: api.Scene.from_octomap(at.file("map.bt", "x")), "{folder}/map.bt: line 1: expected \"# Octomap OcTree binary file\" or \"# Octomap OcTree file\", got 'x': this is no .bt or .ot file"),
+    ("obstacles.PointCloud.without_robot", Invalid, lambda at: api.obstacles.PointCloud([(0, 0, 0)], 0.1).without_robot(PANDA, Q), f"robot 'panda' {NO_CAPSULES}"),
+    ("obstacles.PointCloud.without_robot", Invalid, lambda at: api.obstacles.PointCloud([(0, 0, 0)], 0.1).without_robot(THICK, Q[:6]), "joint angles of robot 'panda': expected 7 joints, got 6"),
+    ("obstacles.Grid.without_robot", Invalid, lambda at: api.obstacles.Grid((0, 0, 0), 0.1, np.ones((1, 1, 1), bool)).without_robot(THICK, Q, padding=-1.0), 'padding must be zero or more and finite, got -1'),
     ("Scene.load", Invalid, lambda at: api.Scene.load(at.file("scene.json", "{}")), '{folder}/scene.json: expected a list of shapes, or an object with such a list as "obstacles"'),
     ("Scene.load", Invalid, lambda at: api.Scene.load(at.file("scene.json", '[{"type": "sphere"}]')), "{folder}/scene.json: obstacle 0 (sphere): the key 'center' is missing; keys: center, radius, touch"),
-    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.needs("yaml").file("scene.yaml", "a: 1")), '{folder}/scene.yaml: expected a MoveIt planning scene: a mapping with "world"'),
+    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.needs("yaml").file("scene.yaml", "a: 1")), '{folder}/scene.yaml: expected a MoveIt planning scene: a mapping with "world", or the .scene text of RViz'),
+    ("Scene.from_moveit", Invalid, lambda at: api.Scene.from_moveit(at.file("cell.scene", "cell\n* table\n")), "{folder}/cell.scene: line 2: expected the number of shapes of object 'table', and the file ends: it is not complete"),
     ("Scene.from_trimesh", Invalid, lambda at: api.Scene.from_trimesh(at.needs("trimesh").value(1)), 'geometry must be a trimesh.Trimesh or a trimesh.Scene, got 1'),
     ("best_base", Invalid, lambda at: api.best_base(UR5, np.full((1, 4, 4), np.nan), region=REGION), 'targets: expected finite poses (4, 4) or (n, 4, 4), got shape (1, 4, 4)'),
     ("best_base", Invalid, lambda at: api.best_base(PANDA, np.eye(4)[None], region=REGION, map=at.map()), "map is of robot 'ur5e', not of 'panda'"),
@@ -210,32 +224,40 @@ ROWS: list[Row] = [
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.0), 'voxel must be positive and finite, got 0'),
     ("reachability", Invalid, lambda at: api.reachability(PANDA, voxel=0.4, directions=6, rolls=1, store=at.file("a.zarr", "no store")), "store: folder '{folder}/a.zarr' cannot be written: File exists"),
     ("reachability", OSError, lambda at: api.reachability(PLANAR, task=api.tasks.Position(), voxel=0.3, store=at.full().path("a.zarr")), '[Errno 28] No space left on device'),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[:5], MEASURED[:5]), "5 measurements give 15 equations for 25 unknowns: measure 9 configurations or more, twice as many if you can, or fit fewer parts"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q[[0] * 20], MEASURED[[0] * 20]), "all configurations are alike: move the arm between measurements, each joint over as much of its range as possible"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, 1e3 * MEASURED), "the measured positions spread 1000 times as far as the arm moves: lengths are in metres, and these look like millimetres; divide by 1000"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, np.degrees(MEASURED_Q).clip(-300, 300), MEASURED), "joint 'shoulder_pan_joint' reaches 300.0 rad, far beyond its limits: angles are in radians, and these look like degrees"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, MEASURED[:, :2]), "measured: expected positions (m, 3), poses (m, 4, 4) or distances (m,), got (40, 2)"),
+    ("calibrate", Invalid, lambda at: api.calibrate(UR5, MEASURED_Q, np.full((40, 3), np.nan)), "measurements must be finite, but row 0, entry 0 is NaN"),
+    ("Calibration.to_urdf", Urdf, lambda at: CALIBRATED.to_urdf(FORK), "URDF: its chain of joints is not that of robot 'held': give the file that the robot was loaded from"),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("self_motion", Invalid, lambda at: api.self_motion(PANDA, np.full((4, 4), np.nan)), 'target must be finite, but entry (0, 0) is NaN'),
     ("self_motion", Invalid, lambda at: api.self_motion(UR5, UR5.fk(np.zeros(6))), "self_motion needs one joint more than the target: robot 'ur5e' has 6 joints, and this target takes 6"),
     ("solve", Invalid, lambda at: api.solve(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("solve", Invalid, lambda at: api.solve(PANDA, [np.nan, 0.0, 0.0]), 'target must be finite, but coordinate x is NaN'),
     ("solve", Invalid, lambda at: api.solve(PANDA, 2.0 * np.eye(4)), 'target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)'),
+    ("solve", Limit, lambda at: api.solve(PANDA, [0.4, 0.0, 0.5], limits=CROSSED), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("solve", Invalid, lambda at: api.solve(BARE, [0.4, 0.0, 0.5], obstacles=[BALL]), f"robot 'iiwa14' {NO_CAPSULES}"),
-    ("solve", Limit, lambda at: api.solve(PANDA, [0.4, 0.0, 0.5], start=BEYOND), f"start: joint 'panda_joint2' at 9 is {FAR_OUTSIDE}"),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, [np.nan, 0.0, 0.0]), 'target must be finite, but coordinate x is NaN'),
+    ("solve_all", Limit, lambda at: api.solve_all(PANDA, [0.4, 0.0, 0.5], limits=CROSSED), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, 2.0 * np.eye(4)), 'target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)'),
     ("solve_all", Invalid, lambda at: api.solve_all(UR5, UR5.fk(UR5_Q), turns=True, limits=WIDE), 'turns=True makes 132120576 configurations; at most 10000 are allowed: narrow the limits'),
-    ("solve_all", Limit, lambda at: api.solve_all(PANDA, [0.4, 0.0, 0.5], start=BEYOND), f"start: joint 'panda_joint2' at 9 is {FAR_OUTSIDE}"),
     ("solve_batch", Invalid, lambda at: api.solve_batch(PANDA, np.eye(3)[None]), 'targets: expected poses (m, 4, 4) or positions (m, 3), got shape (1, 3, 3)'),
     ("solve_batch", Invalid, lambda at: api.solve_batch(PANDA, np.array([np.eye(4), np.full((4, 4), np.nan)])), 'row 1: target must be finite, but entry (0, 0) is NaN'),
+    ("solve_batch", Limit, lambda at: api.solve_batch(PANDA, np.eye(4)[None], limits=CROSSED), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("solve_batch", Invalid, lambda at: api.solve_batch(PANDA, np.array([np.eye(4), 2.0 * np.eye(4)])), 'row 1: target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)'),
-    ("solve_batch", Limit, lambda at: api.solve_batch(PANDA, np.array([np.eye(4), np.eye(4)]), starts=np.array([Q, BEYOND])), f"row 1: start: joint 'panda_joint2' at 9 is {FAR_OUTSIDE}"),
     ("state_to_state", TypeError, lambda at: api.state_to_state([0.0], [1.0], limits=1.0), 'limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got 1.0'),
     ("state_to_state", Invalid, lambda at: api.state_to_state([0.0], [1.0, 2.0], limits=RATED), 'q1: expected 1 joint, got 2'),
     ("state_to_state", Invalid, lambda at: api.state_to_state([np.nan], [1.0], limits=RATED), "q0 must be finite, but joint 'q1' is NaN"),
     ("state_to_state", Invalid, lambda at: api.state_to_state([0.0], [1.0], limits=api.Limits(velocity=0.0, acceleration=1.0)), "velocity limit of joint 'q1' must be positive, got 0"),
     ("state_to_state", Invalid, lambda at: api.state_to_state([0.0], [0.0], limits=RATED), 'trajectory: q0 and q1, with their velocities and accelerations, are the same state: nothing moves'),
-    ("state_to_state", Limit, lambda at: api.state_to_state([0.0], [1.0], limits=api.Limits(upper=0.5, velocity=1.0, acceleration=1.0)), "q1: joint 'q1' at 1 is outside its limits [-inf, 0.5]: move it inside, such as by np.clip"),
+    ("state_to_state", Limit, lambda at: api.state_to_state([0.0], [1.0], limits=api.Limits(upper=0.5, velocity=1.0, acceleration=1.0)), "q1: joint 'q1' at 1 is outside its limits [-inf, 0.5] by 0.5000 rad: robot.clip(q) moves it to the limit, which changes the pose"),
     ("state_to_state", Infeasible, lambda at: api.state_to_state([0.4], [0.2], qd0=[2.0], limits=api.Limits(upper=0.5, velocity=3.0, acceleration=1.0)), "infeasible: joint 'q1' would get to 2.400, beyond its upper limit 0.5000: begin or end it slower, or farther from its limit"),
     ("state_to_state", Unsupported, lambda at: api.state_to_state([0.0], [1.0], limits=VARYING), 'state_to_state cannot honour time-varying velocity limits: give numbers'),
-    ("time_optimal", Invalid, lambda at: api.time_optimal([[0.0], [1.0], [1.0]], limits=RATED), 'path: waypoint 2 is the same as waypoint 1: leave one of them out'),
+    ("time_optimal", Invalid, lambda at: api.time_optimal([[1.0], [1.0]], limits=RATED), 'path: all waypoints are the same: give at least two that differ'),
+    ("time_optimal", Invalid, lambda at: api.time_optimal([[0.0], [1.0]], limits=RATED, tolerance=-1.0), "tolerance of joint 'q1' must be zero or more and finite, got -1"),
     ("time_optimal", Invalid, lambda at: api.time_optimal([[0.0]], limits=RATED), 'waypoints: expected at least 2, got 1'),
     ("time_optimal", Invalid, lambda at: api.time_optimal([[0.0], [np.nan]], limits=RATED), "waypoints must be finite, but joint 'q1' of row 1 is NaN"),
     ("time_optimal", Infeasible, lambda at: api.time_optimal([[0.0], [1.0]], limits=api.Limits(upper=0.5, velocity=1.0, acceleration=1.0)), "infeasible: the path takes joint 'q1' to 1, beyond its upper limit 0.5"),
@@ -251,7 +273,7 @@ ROWS: list[Row] = [
     ("track_model_free", Invalid, lambda at: model_free(Q[:2]), "start of robot 'panda': expected 7 joints, got 2"),
     ("track_model_free", Invalid, lambda at: model_free(Q * np.nan), "start must be finite, but joint 'panda_joint1' is NaN"),
     ("track_model_free", Invalid, lambda at: model_free(Q, dt=0.0), 'dt must be positive and finite, got 0'),
-    ("track_model_free", Limit, lambda at: model_free(BEYOND, limits=api.Limits(upper=2.0)), "start: joint '1' at 9 is outside its limits [-inf, 2]: angles are in radians; np.radians converts degrees"),
+    ("track_model_free", Limit, lambda at: model_free(BEYOND, limits=api.Limits(upper=2.0)), "start: joint '1' at 9 is outside its limits [-inf, 2] by 7.000 rad: move it inside; angles are in radians, and np.radians converts degrees"),
     ("track_model_free", Limit, lambda at: model_free(Q, limits=api.Limits(velocity=-1.0)), 'velocity limit is -1: a limit cannot be negative'),
     ("track_model_free", Unsupported, lambda at: model_free(Q, limits=JERKY), 'track_model_free cannot honour acceleration limits: a controller keeps position and velocity limits; leave it out'),
     ("view", Missing, lambda at: api.view(at.without("viser").value(PANDA)), "the viewer needs viser: pip install 'beetle-ik[view]'"),

@@ -257,15 +257,19 @@ def test_the_objects_of_a_moveit_scene_keep_their_places(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [
-        ("world:", "place:", 'expected a MoveIt planning scene: a mapping with "world"'),
+        (
+            "world:",
+            "place:",
+            'expected a MoveIt planning scene: a mapping with "world", or the .scene text of RViz',
+        ),
         ("world:", "world: [", "not YAML: "),
         ("world:", f"number: {'9' * 5000}\nworld:", "not YAML: Exceeds the limit"),
         ("world:", "day: 2001-13-45\nworld:", "not YAML: month must be in 1..12"),
         ("[0.3]", f"[{'9' * 400}]", "object 'table': unreadable primitives: OverflowError"),
         (
             "type: 2",
-            "type: 4",
-            "object 'table': a primitive of type 'cone'; those that can be read: box, sphere, cylinder",
+            "type: 5",
+            "object 'table': a primitive of type 'prism'; those that can be read: box, sphere, cylinder, cone",
         ),
         ("[0.3]", "[0.3, 1]", "object 'table': a sphere with 2 dimensions"),
         ("[0.3]", "[.nan]", "object 'table': "),
@@ -273,17 +277,18 @@ def test_the_objects_of_a_moveit_scene_keep_their_places(tmp_path: Path) -> None
         (
             "base}\n      prim",
             "tip}\n      prim",
-            "the objects are in several frames ('base', 'tip'); only one can be read",
+            "the objects are in several frames ('base', 'tip'); only one can be read, and those that "
+            "fixed_frame_transforms lists",
         ),
         (
             "name: shelf",
             "robot_state: {attached_collision_objects: [{}]}",
-            "the robot carries what is in attached_collision_objects: ",
+            'attached object 0: expected a mapping with "link_name" and "object", got {}',
         ),
         (
             "world:",
-            "world:\n  octomap: {octomap: {data: [1]}}",
-            "the octomap cannot be read: make a bik.obstacles.Grid",
+            "world:\n  octomap: {header: {frame_id: base}, octomap: {data: [1]}}",
+            "octomap: expected the fields binary, id, resolution and data (bytes), got KeyError('binary')",
         ),
         ("mesh_poses:", "places:", 'object \'can\': "meshes" and "mesh_poses" must be lists of one length'),
         (

@@ -34,7 +34,7 @@ BALL = bik.obstacles.Sphere((0.5, 0.1, 0.5), 0.05)
 PRODUCED: dict[str, Callable[[], Any]] = {
     "expected 7 joints (panda_joint1 to panda_joint7), got 9": lambda: PANDA.fk(np.zeros(9)),
     "inside obstacle": lambda: bik.solve(PANDA.with_capsules(radius=0.06), BALL.center, obstacles=[BALL]),
-    "waypoint 1 is the same as waypoint 0": lambda: bik.time_optimal([[0], [0], [1]], bik.Limits(acceleration=1)),
+    "all waypoints are the same": lambda: bik.time_optimal([[0], [0]], bik.Limits(acceleration=1)),
 }
 
 

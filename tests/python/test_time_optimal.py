@@ -91,6 +91,23 @@ def test_jerk_limits_hold() -> None:
     assert np.all(trajectory.max_jerk() <= 20 * acceleration * (1 + 1e-9))
 
 
+def test_the_noise_of_an_encoder_costs_no_time() -> None:
+    time = np.linspace(0, 20, 2000)
+    clean = np.stack([0.8 * np.sin(2 * np.pi * time / (9 + 2 * i) + i) for i in range(4)], axis=1)
+    step = 2 * np.pi / 4096
+    # A second of rest before it.
+    recorded = np.round(np.vstack((np.repeat(clean[:1], 100, axis=0), clean)) / step) * step
+    limits = bik.Limits(velocity=2.0, acceleration=10.0, jerk=100.0)
+    fastest = bik.time_optimal(clean[::20], limits).duration
+    motion = bik.time_optimal(recorded, limits, tolerance=2 * step)
+    assert motion.duration < 1.02 * fastest < 0.3 * bik.time_optimal(recorded, limits).duration
+    passed = motion.sample(1e-3)[1]
+    missed = [np.abs(passed - row).max(axis=1).min() for row in recorded[::20]]
+    assert max(missed) <= 2 * step + 1e-3  # joints move by less between two samples
+    each = bik.time_optimal(recorded, limits, tolerance=[2 * step] * 4)
+    assert each.duration == motion.duration
+
+
 LIMITS = bik.Limits(velocity=1.0, acceleration=1.0)
 WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
     ([0.0, 1.0], {}, bik.InvalidInputError, "waypoints_q: expected shape (k, n), a row for each waypoint, got (2,)"),
@@ -103,16 +120,22 @@ WRONG: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
     ([[0.0, 1.0]], {}, bik.InvalidInputError, "waypoints: expected at least 2, got 1"),
     ([[0.0], [np.nan]], {}, bik.InvalidInputError, "waypoints must be finite, but joint 'q1' of row 1 is NaN"),
     (
-        [[0.0], [1.0], [1.0]],
+        [[1.0], [1.0]],
         {},
         bik.InvalidInputError,
-        "path: waypoint 2 is the same as waypoint 1: leave one of them out",
+        "path: all waypoints are the same: give at least two that differ",
+    ),
+    (
+        [[0.0, 0.0], [1.0, 1.0]],
+        {"tolerance": [0.1, 0.1, 0.1]},
+        bik.InvalidInputError,
+        "tolerance: expected 2 (one per joint), got 3",
     ),
     (
         [[0.0], [1.0]],
         {"limits": bik.Limits(acceleration=1.0, velocity=0.0)},
         bik.InfeasibleError,
-        "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+        "infeasible: the path moves joint 'q1', where the velocity limit is 0: give limits=Limits(velocity=...)",
     ),
     (
         [[0.0], [1.0]],

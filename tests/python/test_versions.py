@@ -71,7 +71,7 @@ def test_the_library_logs_only_when_asked(caplog: pytest.LogCaptureFixture, tmp_
 
 
 def test_verbose_logs_to_stderr() -> None:
-    command = [sys.executable, "-m", "beetle_ik", "--verbose", "track", "planar5", "--curve", "circle", "--dt", "0.5"]
+    command = [sys.executable, "-m", "beetle_ik", "--verbose", "track", "iiwa14", "--curve", "circle", "--dt", "0.5"]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert " beetle_ik: track: " in done.stderr
 

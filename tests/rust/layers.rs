@@ -35,6 +35,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),
+    ("calibration", &["robot", "obstacle"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),

@@ -21,6 +21,11 @@ mod batch {
     mod plan_batch;
     mod solve_batch;
 }
+mod calibration {
+    mod arms;
+    mod urdf;
+    mod wrong_input;
+}
 mod closed_form {
     mod branches;
 }
@@ -66,6 +71,7 @@ mod motion {
 mod obstacle {
     mod allowed_contacts;
     mod scene;
+    mod without_robot;
 }
 mod path {
     mod curves;
@@ -93,6 +99,7 @@ mod task {
 mod timing {
     mod retime;
     mod time_optimal;
+    mod tolerance;
 }
 mod tpbso {
     mod wang_2019;

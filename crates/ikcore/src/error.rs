@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::message::{Message, Setting, message};
+use crate::wording::named_joints;
 
 /// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -91,6 +92,20 @@ pub enum Error {
         /// All tips, separated by commas.
         known: String,
     },
+    /// A value was given for a joint that q does not contain.
+    #[error("robot '{robot}' has no joint '{name}' in q{problem}; its joints: {joints}; {remedy}")]
+    UnknownJoint {
+        /// The robot's name.
+        robot: String,
+        /// The given name.
+        name: String,
+        /// Text ` (did you mean 'x'?)`, the reason why the joint is not in q, or empty.
+        problem: String,
+        /// All joints of q, separated by commas.
+        joints: String,
+        /// How to pass over values of other joints.
+        remedy: Message,
+    },
     /// A call that takes robots with one tip got one with several.
     #[error("{call} takes robots with one tip; this one has {tips}: {remedy}")]
     SeveralTips {
@@ -168,10 +183,10 @@ pub enum Error {
         time: Option<f64>,
     },
     /// A configuration outside the position limits.
-    #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}]")]
+    #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}] {excess}")]
     OutsideLimits {
         /// Name of the argument, for example "start".
-        what: String,
+        what: Message,
         /// The joint's name.
         joint: String,
         /// Value of the joint (rad or m).
@@ -180,6 +195,8 @@ pub enum Error {
         lower: f64,
         /// Upper limit of the joint (rad or m).
         upper: f64,
+        /// Excess over the nearer limit, and what brings the joint inside.
+        excess: Message,
     },
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
@@ -247,6 +264,12 @@ pub enum Error {
         /// The conflicting requirements.
         problem: Message,
     },
+    /// Measurements that cannot be right, or do not suffice.
+    #[error("{problem}")]
+    InvalidMeasurement {
+        /// Description of the problem, with advice.
+        problem: Message,
+    },
     /// A matrix that is not a rigid transform.
     #[error("{what} is not a rigid transform: {problem}")]
     NotRigid {
@@ -297,13 +320,11 @@ pub enum Error {
         /// Advice on allowing the contact, after a semicolon; empty if a joint moves the link.
         remedy: Message,
     },
-    /// A joint with neither a velocity nor an acceleration limit.
-    #[error(
-        "joint '{joint}' has neither a velocity nor an acceleration limit, so that nothing sets its pace: {remedy}"
-    )]
+    /// Joints with neither a velocity nor an acceleration limit.
+    #[error("{problem}: {remedy}")]
     NoPace {
-        /// The joint's name.
-        joint: String,
+        /// The joints and what they lack.
+        problem: String,
         /// The remedy.
         remedy: Message,
     },
@@ -386,9 +407,14 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
-    /// Creates an [`Error::NoPace`].
-    pub(crate) fn no_pace(joint: &str) -> Self {
-        Self::NoPace { joint: joint.into(), remedy: message!["give ", Setting::Limit("velocity")] }
+    /// Creates an [`Error::NoPace`]; `note` ends the remedy.
+    pub(crate) fn no_pace(joints: &[&str], note: &str) -> Self {
+        let lack = match joints {
+            [_] => "has neither a velocity nor an acceleration limit, so that nothing sets its pace",
+            _ => "have neither a velocity nor an acceleration limit, so that nothing sets their pace",
+        };
+        let remedy = message!["give ", Setting::Limit("velocity"), note];
+        Self::NoPace { problem: format!("{} {lack}", named_joints(joints)), remedy }
     }
 
     /// Returns the error with these words in place of the plain ones of each setting in its messages.
@@ -409,10 +435,13 @@ impl Error {
             Self::OutOfRange { what, requirement, .. } => vec![what, requirement],
             Self::SeveralTips { call, remedy, .. } => vec![call, remedy],
             Self::UnsupportedLimit { method, remedy, .. } => vec![method, remedy],
-            Self::NoCapsules { remedy, .. } | Self::InCollision { remedy, .. } | Self::NoPace { remedy, .. } => {
-                vec![remedy]
-            }
+            Self::OutsideLimits { what, excess, .. } => vec![what, excess],
+            Self::NoCapsules { remedy, .. }
+            | Self::InCollision { remedy, .. }
+            | Self::NoPace { remedy, .. }
+            | Self::UnknownJoint { remedy, .. } => vec![remedy],
             Self::InvalidRobot { problem, .. }
+            | Self::InvalidMeasurement { problem }
             | Self::Urdf { problem, .. }
             | Self::Srdf { problem, .. }
             | Self::Unreachable { problem, .. }

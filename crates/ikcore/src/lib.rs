@@ -52,7 +52,7 @@
 //! | 3 | [`robot`] |
 //! | 4 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`units`], [`motion`], [`task`], [`solver`] |
-//! | 6 | [`load`], [`problem`] |
+//! | 6 | [`load`], [`problem`], [`calibration`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
 //! | 9 | `free_path`, `along_path` |
@@ -70,6 +70,7 @@ mod along_path;
 mod approach_retreat;
 pub mod batch;
 mod bodies;
+pub mod calibration;
 mod closed_form;
 pub mod error;
 mod free_path;

@@ -72,6 +72,13 @@ pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list
 }
 
+/// Names joints, as the subject of a sentence.
+pub(crate) fn named_joints(joints: &[&str]) -> String {
+    let quoted: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
+    let many = if joints.len() == 1 { "joint" } else { "joints" };
+    format!("{many} {}", listed(quoted.iter().map(String::as_str)))
+}
+
 /// Rounds a time (s) to 1e-9 s, which removes the rounding of sums of dt.
 pub(crate) fn time(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e9

@@ -19,6 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyList, PyString, PyTuple, PyType};
 
 use crate::error::{invalid, raise};
+use crate::python_calls;
 use crate::signals::check_signals_at;
 
 /// A float64 array of any shape.
@@ -47,6 +48,14 @@ impl<'py> Deref for Numbers<'py> {
     }
 }
 
+/// Arguments with an entry for each joint. A table with the names of the joints may have them in another order.
+const OF_JOINTS: [&str; 9] = ["waypoints_q", "q0", "q1", "q", "qd", "qdd", "posture", "joint angles", "start_qd"];
+
+/// Whether the value is a plain list or tuple.
+pub fn is_list(value: &Bound<'_, PyAny>) -> bool {
+    value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>()
+}
+
 /// Converts an array-like to float64 in C order; copies only if needed. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
@@ -58,6 +67,11 @@ pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py
     }
     if is_masked(value)? {
         return Err(invalid(format!("{what} has masked entries: replace them first, such as by .filled(value)")));
+    }
+    if OF_JOINTS.contains(&what) && !is_list(value) && python_calls::labelled(value)?.is_some() {
+        return Err(invalid(format!(
+            "{what} has names: robot.q_from puts its numbers in the order of the joints, and .to_numpy() takes them as they are"
+        )));
     }
     let no_numbers = || invalid(format!("{what} must be an array of numbers, got {}", summary(value)));
     if is_misread(value)? {
@@ -343,26 +357,10 @@ fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<
 }
 
 /// The rows (m, n) of a batch, or a single row (n,): the numbers and, for a batch, m. The core checks n of a single row;
-/// [`rows`] checks it for a batch.
+/// [`joint_rows`](crate::joint_order::joint_rows) checks it for a batch.
 pub enum Rows<'py> {
     /// One row.
     One(Numbers<'py>),
     /// m rows.
     Many(Numbers<'py>, usize),
-}
-
-/// Reads (n,) or (m, n); `owner` names the robot in errors.
-pub fn rows<'py>(what: &str, owner: &str, n: usize, value: &Bound<'py, PyAny>) -> PyResult<Rows<'py>> {
-    let array = array(what, value)?;
-    match array.shape() {
-        [_] => Ok(Rows::One(array)),
-        [m, columns] if *columns == n => {
-            let m = *m;
-            Ok(Rows::Many(array, m))
-        }
-        shape => Err(invalid(format!(
-            "{what} of robot '{owner}': expected shape ({n},) or (m, {n}), got {}",
-            shape_text(shape)
-        ))),
-    }
 }

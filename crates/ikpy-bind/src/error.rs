@@ -30,6 +30,7 @@ impl Classes {
             Error::UnknownRobot { .. }
             | Error::UnknownLink { .. }
             | Error::UnknownTip { .. }
+            | Error::UnknownJoint { .. }
             | Error::NotHeld { .. } => &self.unknown_name,
             Error::Urdf { .. } | Error::Srdf { .. } | Error::AmbiguousTip { .. } => &self.urdf,
             Error::EmptyRange { .. }
@@ -135,13 +136,10 @@ pub fn raise(error: Error) -> PyErr {
 fn remedy(error: &Error) -> &'static str {
     match error {
         Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),
-        Error::OutsideLimits { value, lower, upper, .. } => {
-            let in_degrees = value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians());
-            if in_degrees {
-                ": angles are in radians; np.radians converts degrees"
-            } else {
-                ": move it inside, such as by np.clip"
-            }
+        Error::OutsideLimits { value, lower, upper, .. }
+            if value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians()) =>
+        {
+            "; angles are in radians, and np.radians converts degrees"
         }
         _ => "",
     }

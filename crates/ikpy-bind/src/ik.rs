@@ -88,13 +88,13 @@ impl PySolution {
     }
 
     /// Smallest distance (m) between the robot and obstacles, or between two of its links; a negative value is the depth of the
-    /// deepest overlap. NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    /// deepest overlap. NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
         self.whole().clearance()
     }
 
-    /// The nearest two bodies, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    /// The nearest two bodies, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
         self.whole().nearest.as_ref()?.clearance.nearest.clone().map(PyNearest::from)
@@ -155,7 +155,7 @@ impl PySolution {
 ///         dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
 ///         "right_tool") gives the pose of the second tip in the frame of the first.
 ///     task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
-///     start: configuration (n,). For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
+///     start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit. For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
 ///         search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
 ///         solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
 ///         target.
@@ -176,7 +176,8 @@ impl PySolution {
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     stop: budgets; None: a count of evaluations that keeps a 7-joint arm under about 10 ms.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -187,7 +188,7 @@ impl PySolution {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or obstacles and a robot without bodies.
-///     LimitError: a start outside the limits.
+///     LimitError: limits that contradict each other.
 ///
 /// For example:
 ///
@@ -241,7 +242,7 @@ pub fn solve(
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;
     let surroundings = options.surroundings;
-    let around = (surroundings.is_given() && core.nearest.is_none())
+    let around = (surroundings.apply_to(&robot.core) && core.nearest.is_none())
         .then(|| Box::new(Around { robot: robot.core.clone(), surroundings, whole: OnceLock::new() }));
     Ok(PySolution { around, ..PySolution::new(py, core, in_force, tips) })
 }

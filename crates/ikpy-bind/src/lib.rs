@@ -1,6 +1,7 @@
 //! The native module `beetle_ik._core`: registration of classes and functions. Each file wraps one module of the core.
 
 mod batch;
+mod calibration;
 mod convert;
 mod error;
 mod gate;
@@ -29,6 +30,7 @@ mod signals;
 mod solve_all;
 mod solve_arguments;
 mod solver;
+mod start_gate;
 mod task;
 mod tip_keys;
 mod tips;
@@ -71,6 +73,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(posture::planar_posture, module)?)?;
     module.add_class::<minimize::PyMinimum>()?;
     module.add_function(wrap_pyfunction!(minimize::minimize_function, module)?)?;
+    calibration::register(module)?;
     path::register(module)?;
     obstacle::register(module)?;
     module.add_function(wrap_pyfunction!(motion::state_to_state, module)?)?;

@@ -1,11 +1,16 @@
 //! `state_to_state`.
 
+use ikcore::limits::{Limits, StartSlack};
 use ikcore::motion::{self, ArmState};
+use ikcore::planning::EndTurns;
 use pyo3::prelude::*;
 
 use crate::convert::vector;
-use crate::error::raise;
-use crate::limits::required_limits;
+use crate::error::{invalid, raise};
+use crate::joint_order::joint_vector;
+use crate::limits::{Sampling, limits_of_call, required_limits};
+use crate::robot::PyRobot;
+use crate::start_gate::read_slack;
 use crate::trajectory::{PyTrajectory, names};
 
 /// Computes the fastest joint motion from one state to another; all joints arrive together.
@@ -21,7 +26,12 @@ use crate::trajectory::{PyTrajectory, names};
 ///     limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
 ///     qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
 ///     qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
-///     joint_names: n names; None: "q1", "q2" and so on.
+///     joint_names: n names; None: "q1", "q2" and so on, or those of the robot.
+///     robot: the arm whose joints these are: position and velocity limits left out are then its own, and joints that turn without
+///         limits go the short way round.
+///     start_slack: how far q0 may be outside its position limits (rad, m), a number or (n,); the motion then begins there and goes
+///         inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
+///     end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 ///
 /// Returns:
 ///     A `Trajectory` of cubic segments.
@@ -29,7 +39,7 @@ use crate::trajectory::{PyTrajectory, names};
 /// Raises:
 ///     TypeError: limits that are no `Limits`.
 ///     InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
-///     LimitError: a position outside its limits.
+///     LimitError: q0 farther outside its limits than start_slack, or q1 outside them.
 ///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
 ///         limits.
 ///     UnsupportedLimit: limits that vary in time.
@@ -41,7 +51,8 @@ use crate::trajectory::{PyTrajectory, names};
 ///     >>> round(motion.duration, 3)
 ///     0.9
 #[pyfunction]
-#[pyo3(signature = (q0, q1, limits, *, qd0=None, qdd0=None, qd1=None, qdd1=None, joint_names=None))]
+#[pyo3(signature = (q0, q1, limits, *, qd0=None, qdd0=None, qd1=None, qdd1=None, joint_names=None, robot=None, start_slack=None,
+                    end_turns="nearest"))]
 #[allow(clippy::too_many_arguments)]
 pub fn state_to_state(
     py: Python<'_>,
@@ -53,19 +64,42 @@ pub fn state_to_state(
     qd1: Option<&Bound<'_, PyAny>>,
     qdd1: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
+    robot: Option<&PyRobot>,
+    start_slack: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = crate::convert::text)] end_turns: &str,
 ) -> PyResult<PyTrajectory> {
-    let from = read_state(("q0", q0), [("qd0", qd0), ("qdd0", qdd0)])?;
-    let to = read_state(("q1", q1), [("qd1", qd1), ("qdd1", qdd1)])?;
-    let limits = required_limits(limits)?.for_joints(py, &names(joint_names, from.q.len())?)?;
-    motion::state_to_state(&from, &to, &limits).map(PyTrajectory::from).map_err(raise)
+    let mut from = read_state(robot, ("q0", q0), [("qd0", qd0), ("qdd0", qdd0)])?;
+    let mut to = read_state(robot, ("q1", q1), [("qd1", qd1), ("qdd1", qdd1)])?;
+    let (given, mut slack) = (required_limits(limits)?, read_slack(start_slack)?);
+    let end_turns: EndTurns = end_turns.parse().map_err(raise)?;
+    let limits = match robot {
+        None => given.for_joints(py, &names(joint_names, from.q.len())?)?,
+        Some(_) if joint_names.is_some() => {
+            return Err(invalid("robot has joint_names of its own: leave one out".into()));
+        }
+        Some(robot) => {
+            robot.core.check("q0", &from.q).and_then(|()| robot.core.check("q1", &to.q)).map_err(raise)?;
+            let (_, resolved) = limits_of_call(py, Some(given), robot, &Sampling::once())?;
+            let limits = resolved.unwrap_or_else(|| Limits::of(&robot.core));
+            from.q = limits.admit_start(Some(&robot.core), "q0", &from.q, &slack).map_err(raise)?.q;
+            to.q = limits.admit(Some(&robot.core), "q1", &to.q).map_err(raise)?;
+            slack = StartSlack::any();
+            if end_turns == EndTurns::Nearest {
+                limits.turn_near(&robot.core, &from.q, &mut to.q).map_err(raise)?;
+            }
+            limits
+        }
+    };
+    motion::state_to_state_from(&from, &to, &limits, &slack).map(PyTrajectory::from).map_err(raise)
 }
 
 /// Reads a state; velocities and accelerations that are not given are zero.
 fn read_state(
+    robot: Option<&PyRobot>,
     (name, q): (&str, &Bound<'_, PyAny>),
     rates: [(&str, Option<&Bound<'_, PyAny>>); 2],
 ) -> PyResult<ArmState> {
-    let q = vector(name, q)?;
+    let q = robot.map_or_else(|| vector(name, q), |robot| joint_vector(&robot.core, name, q))?;
     let read = |(name, value): (&str, Option<&Bound<'_, PyAny>>)| match value {
         Some(value) => vector(name, value),
         None => Ok(vec![0.0; q.len()]),

@@ -51,6 +51,11 @@ pub fn expand_xacro(py: Python<'_>, path: &str, package_dirs: &[String], trusted
     call(py, "beetle_ik.robot_files.xacro", "expand", (path, package_dirs, trusted))?.extract()
 }
 
+/// Calls `beetle_ik.calls.labelled.labelled(value)`: names and numbers of a value whose numbers have names.
+pub fn labelled<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<(Vec<String>, Bound<'py, PyAny>)>> {
+    call(value.py(), "beetle_ik.calls.labelled", "labelled", (value,))?.extract()
+}
+
 /// Logs a long call at level INFO under "beetle_ik".
 pub fn log(py: Python<'_>, function: &str, message: &str) -> PyResult<()> {
     let message = format!("{function}: {message}");

@@ -187,7 +187,7 @@ impl Unreached {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
-///     start: (n,); solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
+///     start: (n,), a hint as in `solve`; solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
 ///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
 ///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
 ///         a closed form are returned, those of a search differ by 0.1.
@@ -202,7 +202,8 @@ impl Unreached {
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     stop: budgets of the whole search; None: as for `solve`. A closed form ignores them.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///
@@ -212,7 +213,7 @@ impl Unreached {
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
 ///         configurations.
-///     LimitError: a start outside the limits.
+///     LimitError: limits that contradict each other.
 ///
 /// For example:
 ///
@@ -263,12 +264,8 @@ pub fn solve_all(
         stop,
         seed,
     };
-    let each = arguments.read(
-        robot,
-        &asked,
-        start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?,
-        resolved,
-    )?;
+    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
+    let each = arguments.read(robot, &asked, start, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;
     let options = AllOptions { each, limit, separation, redundancy, turns };

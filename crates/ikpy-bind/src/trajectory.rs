@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, own, row, shape_text, shortened, table, times, vector};
+use crate::convert::{Array, array, copied, counted, is_list, own, row, shape_text, shortened, table, times, vector};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
@@ -77,7 +77,7 @@ impl PyTrajectory {
     }
 
     /// Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
-    /// are given, quintic if accelerations qdd (k, n) are given too.
+    /// are given, quintic if accelerations qdd (k, n) are given too. A table of pandas gives its columns as `joint_names`.
     #[staticmethod]
     #[pyo3(signature = (time, q, *, qd=None, qdd=None, joint_names=None))]
     fn from_samples(
@@ -88,6 +88,8 @@ impl PyTrajectory {
         #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let (py, time) = (time.py(), vector("time", time)?);
+        let named = if is_list(q) { None } else { python_calls::labelled(q)? };
+        let (columns, q) = named.map_or_else(|| (None, q.clone()), |(columns, q)| (Some(columns), q));
         let read = |what: &str, value: &Bound<'_, PyAny>| {
             let values = array(what, value)?;
             match values.shape() {
@@ -98,10 +100,10 @@ impl PyTrajectory {
                 }
             }
         };
-        let (q, n) = read("q", q)?;
+        let (q, n) = read("q", &q)?;
         let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
         let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
-        let joints = names(joint_names, n)?;
+        let joints = names(joint_names.or(columns), n)?;
         long_call(py, || Trajectory::from_samples(joints, &time, &q, qd.as_deref(), qdd.as_deref())).map(Self)
     }
 

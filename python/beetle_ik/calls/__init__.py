@@ -1,6 +1,7 @@
 """Arguments, messages and progress of calls in Python and in the native module.
 
 arguments   checks of arguments
+labelled    numbers with names: messages, dicts, tables
 wording     errors of arguments that do not fit, with the argument, its value and what is expected
 names       suggestions for misspelt names
 text        counts and lists in messages, numbers that read back

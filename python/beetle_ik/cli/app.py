@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from .. import BeetleIkError, UnitsWarning, __version__
+from .calibrate import calibrate
 from .doctor import doctor
 from .fk import fk
 from .options import numbers_joined
@@ -92,7 +93,7 @@ def _options_of_all(
         logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track, reach, view, doctor):
+for command in (robots, fk, solve, track, reach, calibrate, view, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

@@ -10,7 +10,12 @@ _OPTIONS = {
     "free_start=True": "--free-start",
     "margin=": "--margin",
     "obstacles= (a list, which may be empty) or self_collision=True": "--scene",
+    "scene.attach_to(robot)": "a robot that carries it (Scene.attach_to in Python)",
+    **{f"{kind}.without_robot(robot, q)": f"{kind}.without_robot in Python" for kind in ("PointCloud", "Grid")},
     "one of them as tip=": "one of them as --tip",
+    "robot.wrap(q) takes whole turns off and brings it inside": "whole turns taken off bring it inside",
+    "robot.clip(q) moves it to the limit, which changes the pose": "moving it to the limit changes the pose",
+    "; start_slack takes a start farther out": "",
     "plan.retime(limits)": "`beetle-ik plan retime`",
     "with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])": "by --link-radius",
 }

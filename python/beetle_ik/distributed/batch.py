@@ -21,6 +21,7 @@ from ..calls.wording import worded_call
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path
+from ..scenes import Scene, obstacles_for
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -168,7 +169,7 @@ def solve_batch(
         "goals": read_once(goals),
         "prefer": prefer,
         "limits": limits,
-        "obstacles": read_once(obstacles),
+        "obstacles": obstacles_for(robot, obstacles) if isinstance(obstacles, Scene) else read_once(obstacles),
         "margin": margin,
         "self_collision": self_collision,
         "stop": stop,

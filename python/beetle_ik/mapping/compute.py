@@ -15,7 +15,7 @@ from ..calls.wording import worded_call
 from ..chunked.chunks import Job, require_client, run
 from ..chunked.fingerprint import description
 from ..chunked.store import Column, Layout, store_path
-from ..scenes import Scene
+from ..scenes import obstacles_for
 from .map_file import QUALITY, attached
 from .reachability_map import ReachabilityMap
 
@@ -106,7 +106,7 @@ def computed(
     require("any_instruction_set", any_instruction_set, bool)
     folder = None if store is None else store_path(store)
     obstacles = asked["obstacles"]
-    options = {**asked, "obstacles": None if obstacles is None else list(Scene(obstacles))}
+    options = {**asked, "obstacles": None if obstacles is None else obstacles_for(robot, obstacles)}
     of_grid = {name: options[name] for name in ("task", "obstacles", "margin", "self_collision")}
     grid = MapGrid(robot, **poses, **of_grid)
     map_chunks(robot, grid, [], **options, threads=threads)  # the core checks all other arguments

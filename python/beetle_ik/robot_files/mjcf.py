@@ -2,6 +2,7 @@
 
 import os
 import re
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +16,7 @@ from .._core import InvalidInputError, Robot, UnknownNameError, UrdfError, pose
 from ..calls.arguments import require, require_text
 from ..calls.text import exact, listed
 from ..installed.needs import library
+from .mjcf_equalities import Equalities
 from .mjcf_files import require_own_files
 
 if TYPE_CHECKING:
@@ -47,7 +49,8 @@ def robot(
         except UrdfError as error:
             problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
             raise InvalidInputError(problem) from None
-    reader.require_uncoupled(made.joint_names)
+    made = made.with_held(reader.rests(made, hold or {}))
+    reader.require_kept(made)
     made._doubt_degrees()
     return made
 
@@ -74,7 +77,7 @@ class _Reader:
         self.bodies = [model.body(i).name or f"body_{i}" for i in range(model.nbody)]
         self.sites = [model.site(i).name for i in range(model.nsite)]
         self.joints = [model.joint(i).name or f"joint_{i}" for i in range(model.njnt)]
-        self.followed, self.coupled = self._couplings()
+        self.equalities = Equalities(mujoco, model, self.joints)
 
     def require_known(self, name: str | None) -> None:
         """Raises `UnknownNameError` unless `name` is None, a body or a site."""
@@ -83,13 +86,42 @@ class _Reader:
             known = f"bodies: {listed(self.bodies)}" + (f"; sites: {listed(named)}" if named else "")
             raise UnknownNameError(f"no body or site '{name}' in the MuJoCo model; {known}")
 
-    def require_uncoupled(self, joints: list[str]) -> None:
-        """Raises `InvalidInputError` if an equality constraint couples one of these joints, except linearly."""
-        for joint in joints:
-            if joint in self.coupled:
-                raise InvalidInputError(
-                    f"joint '{joint}' of the MuJoCo model is coupled by an equality constraint that is not linear"
+    def rests(self, robot: Robot, hold: Mapping[str, float]) -> dict[str, float]:
+        """Returns the reference positions of held joints not in `hold`: there, MuJoCo closes loops."""
+        rests = {}
+        for joint, name in enumerate(self.joints):
+            if name in robot.held_joints and name not in hold:
+                rest, (lower, upper) = (
+                    float(self.model.qpos0[self.model.jnt_qposadr[joint]]),
+                    self.model.jnt_range[joint],
                 )
+                rests[name] = float(np.clip(rest, lower, upper)) if self.model.jnt_limited[joint] else rest
+        return rests
+
+    def require_kept(self, robot: Robot) -> None:
+        """Raises `InvalidInputError` for an equality that joints of the chain do not keep; warns for the others."""
+        chain = {joint for joint in range(len(self.joints)) if self.equalities.leader(joint) in robot.joint_names}
+        for tip in robot.tips:
+            chain |= self.equalities.between((self._carrier(robot.link_names[0]), self._carrier(tip)))
+        for found in self.equalities.open_in(robot):
+            if chain & found.joints:
+                coupled = listed([self.joints[joint] for joint in sorted(found.joints)])
+                raise InvalidInputError(
+                    f"MuJoCo model: {found.described} couples the joints {coupled}, which is not followed (linear "
+                    "couplings and locks are, where they agree): choose base and tip on one side of it, or set "
+                    "active='false' if the motion of the tip does not depend on it"
+                )
+            warnings.warn(
+                f"MuJoCo model: {found.described} is open by {found.residual:.3g} (m or rad) where joints beside the "
+                "chain are held: bodies there may stand elsewhere in MuJoCo; hold=... closes it",
+                stacklevel=3,
+            )
+
+    def _carrier(self, name: str) -> int:
+        """Returns the body of this name, or the body that carries the site of this name."""
+        if name in self.bodies:
+            return self.bodies.index(name)
+        return int(self.model.site_bodyid[self.sites.index(name)])
 
     def urdf(self, tips: list[str]) -> str:
         """Returns the model as a URDF; sites among `tips` become links, unless a body has the same name."""
@@ -140,7 +172,11 @@ class _Reader:
             kind, inner = self._kind(joint), self._attributes(joint)
             # A joint of MuJoCo moves about an anchor in the body, by qpos minus its reference value.
             rest = float(model.qpos0[model.jnt_qposadr[joint]]) if inner else 0.0
+            if (locked := self.equalities.lock(joint)) is not None:
+                rest -= locked
             back = pose(-rest * axis) if kind == "prismatic" else pose([0, 0, 0], rotvec=-rest * axis)
+            if locked is not None:
+                kind, inner = "fixed", []
             origin = place @ pose(anchor) @ back
             if joint == first + count - 1 and not anchor.any():
                 yield from _joint(self.joints[joint], kind, at, name, origin, inner)
@@ -163,29 +199,14 @@ class _Reader:
         if self._kind(joint) in ("spherical", "floating"):
             return []
         inner = [f"<axis xyz='{exact(model.jnt_axis[joint])}'/>"]
-        if model.jnt_limited[joint]:
-            lower, upper = model.jnt_range[joint]
+        if model.jnt_limited[joint] or self._kind(joint) == "prismatic":
+            lower, upper = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
             inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}'/>")
-        if joint in self.followed:
-            master, scale, offset = self.followed[joint]
+        master, scale, offset = self.equalities.drives.get(joint, (None, 0.0, 0.0))
+        if master is not None:
             name = quoteattr(self.joints[master])
             inner.append(f"<mimic joint={name} multiplier='{scale!r}' offset='{offset!r}'/>")
         return inner
-
-    def _couplings(self) -> tuple[dict[int, tuple[int, float, float]], set[str]]:
-        """Returns the joints that follow another linearly, and the names of joints coupled otherwise."""
-        model = self.model
-        followed: dict[int, tuple[int, float, float]] = {}
-        coupled: set[str] = set()
-        for i in np.flatnonzero((model.eq_type == self.mujoco.mjtEq.mjEQ_JOINT) & (model.eq_active0 != 0)):
-            joint, master = int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
-            constant, scale, *bends = (float(factor) for factor in model.eq_data[i][:5])
-            if master < 0 or any(bends) or joint in followed:
-                coupled.add(self.joints[joint])
-                continue
-            rest, master_rest = (float(model.qpos0[model.jnt_qposadr[j]]) for j in (joint, master))
-            followed[joint] = (master, scale, rest + constant - scale * master_rest)
-        return followed, coupled
 
     def _collisions(self, body: int) -> Iterator[str]:
         """Yields the geoms that take part in collisions."""

@@ -5,14 +5,14 @@
         {"type": "box", "center": [0.5, 0.0, 0.1], "size": [0.4, 0.6, 0.2]}
     ]}
 
-A bare list is a scene too. The other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in metres
-and radians.
+A bare list is a scene too. What the robot carries is in "attached", each with "link", "shape", "touch" and "name". The
+other keys of a shape are the arguments of its class in `beetle_ik.obstacles`, in metres and radians.
 """
 
 import inspect
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle
 from ..calls.names import meant
 from ..files.whole import path_of, whole_file
+from .attached import Attached, checked
 
 VERSION = 1
 
@@ -40,17 +41,19 @@ _SHAPES: dict[str, type[Obstacle]] = {
 _TYPES = {shape: name for name, shape in _SHAPES.items()}
 
 
-def write_obstacles(file: str | os.PathLike[str], shapes: Iterable[Obstacle]) -> None:
+def write_scene(file: str | os.PathLike[str], shapes: Iterable[Obstacle], attached: Sequence[Attached]) -> None:
     """Writes the file of a scene."""
-    text = scene_text(shapes)
+    text = scene_text(shapes, attached)
     with whole_file(file) as stream:
         stream.write(text.encode())
 
 
-def scene_text(shapes: Iterable[Obstacle]) -> str:
+def scene_text(shapes: Iterable[Obstacle], attached: Sequence[Attached] = ()) -> str:
     """Returns a scene as JSON, an obstacle a line. Numbers are exact."""
     lines = ",\n".join(f"    {json.dumps(_described(shape))}" for shape in shapes)
-    return f'{{"version": {VERSION}, "obstacles": [\n{lines}\n]}}\n'
+    carried = [json.dumps(entry._asdict() | {"shape": _described(entry.shape)}) for entry in attached]
+    more = ', "attached": [\n    {}\n]'.format(",\n    ".join(carried)) if carried else ""
+    return f'{{"version": {VERSION}, "obstacles": [\n{lines}\n]{more}}}\n'
 
 
 def _described(shape: Obstacle) -> dict[str, Any]:
@@ -59,21 +62,29 @@ def _described(shape: Obstacle) -> dict[str, Any]:
     return {"type": _TYPES[kind]} | {name: np.asarray(getattr(shape, name)).tolist() for name in names}
 
 
-def read_obstacles(file: str | os.PathLike[str]) -> list[Obstacle]:
-    """Reads the obstacles of a scene.
+def read_scene(file: str | os.PathLike[str]) -> tuple[list[Obstacle], list[Attached]]:
+    """Reads the obstacles and the attached objects of a scene.
 
     Raises:
         InvalidInputError: the file is not a scene; the message names the file and the obstacle.
     """
-    return obstacles_in(path_of(file).read_bytes(), os.fspath(file))
+    return _scene_in(path_of(file).read_bytes(), os.fspath(file))
 
 
 def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
     """Reads the obstacles of a scene from the content of a file; `where` names the file in errors.
 
     Raises:
-        InvalidInputError: the content is not a scene; the message names the file and the obstacle.
+        InvalidInputError: the content is not a scene, or has attached objects; the message names the file and the
+            obstacle.
     """
+    shapes, attached = _scene_in(content, where)
+    if attached:
+        raise InvalidInputError(f"{where}: the robot carries '{attached[0].name}' in this scene: use Scene.attach_to")
+    return shapes
+
+
+def _scene_in(content: bytes, where: str) -> tuple[list[Obstacle], list[Attached]]:
     try:
         scene = json.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
@@ -88,12 +99,26 @@ def obstacles_in(content: bytes, where: str) -> list[Obstacle]:
         shapes = scene.get("obstacles")
     if not isinstance(shapes, list):
         raise InvalidInputError(f'{where}: expected a list of shapes, or an object with such a list as "obstacles"')
-    if isinstance(scene, dict) and (unknown := scene.keys() - {"version", "obstacles"}):
+    known = ["version", "obstacles", "attached"]
+    if isinstance(scene, dict) and (unknown := scene.keys() - set(known)):
         key = min(unknown)
-        raise InvalidInputError(
-            f'{where}: unknown key {key!r:.60}{meant(key, ["version", "obstacles"])}; keys: "version", "obstacles"'
-        )
-    return [_shape(f"{where}: obstacle {i}", shape) for i, shape in enumerate(shapes)]
+        keys = ", ".join(f'"{name}"' for name in known)
+        raise InvalidInputError(f"{where}: unknown key {key!r:.60}{meant(key, known)}; keys: {keys}")
+    attached = scene.get("attached", []) if isinstance(scene, dict) else []
+    if not isinstance(attached, list):
+        raise InvalidInputError(f'{where}: "attached" must be a list, got {attached!r:.60}')
+    obstacles_read = [_shape(f"{where}: obstacle {i}", shape) for i, shape in enumerate(shapes)]
+    return obstacles_read, [_attached(f"{where}: attached {i}", entry) for i, entry in enumerate(attached)]
+
+
+def _attached(where: str, entry: Any) -> Attached:
+    keys = Attached._fields
+    if not isinstance(entry, dict) or entry.keys() != set(keys):
+        raise InvalidInputError(f"{where}: expected an object with the keys {', '.join(keys)}, got {entry!r:.60}")
+    try:
+        return checked([Attached(**entry | {"shape": _shape(where, entry["shape"])})])[0]
+    except BeetleIkError as error:
+        raise InvalidInputError(str(error).replace("attached 0", where, 1)) from error
 
 
 def _not_json(error: json.JSONDecodeError) -> str:

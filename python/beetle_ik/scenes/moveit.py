@@ -1,7 +1,7 @@
-"""Obstacles of a MoveIt planning scene in YAML."""
+"""Obstacles of a MoveIt planning scene in YAML, or in the text of RViz."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,52 +11,90 @@ from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle, pose
 from ..files.whole import path_of
 from ..installed.needs import library
+from .attached import Attached, carried
+from .frames import frame_of, placed_frames, rigid
+from .octomap import octomap_message
+from .rviz import is_rviz_text, rviz_obstacles
+from .solids import moved, solid, two_sided
 
 _PRIMITIVES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}  # types of shape_msgs/SolidPrimitive
 _LISTS = (("primitives", "primitive_poses"), ("meshes", "mesh_poses"), ("planes", "plane_poses"))
 
 
-def read_planning_scene(file: str | os.PathLike[str], frame: ArrayLike | None) -> list[Obstacle]:
-    """Reads the collision objects; `frame` is the pose (4, 4) of their frame in the frame of the robot's base.
+def read_moveit(file: str | os.PathLike[str], frame: ArrayLike | None) -> tuple[list[Obstacle], list[Attached]]:
+    """Reads the obstacles, and what the robot carries; `frame` is the pose (4, 4) of their frame in that of the base.
 
     Raises:
         InvalidInputError: not a planning scene, or an object that cannot become an obstacle; the message names it.
     """
-    yaml = library("yaml", "pyyaml", "reading a MoveIt planning scene")
     path, where = path_of(file), os.fspath(file)
-    place = np.eye(4) if frame is None else _rigid(frame)
+    place = np.eye(4) if frame is None else rigid(frame)
     try:
-        scene = yaml.safe_load(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InvalidInputError(f"{where}: not UTF-8: expected YAML, or a .scene text of RViz") from error
+    if path.suffix == ".scene" or is_rviz_text(text):
+        return rviz_obstacles(where, text, place), []
+    return _planning_scene(where, text, place)
+
+
+def _planning_scene(where: str, text: str, place: NDArray[np.float64]) -> tuple[list[Obstacle], list[Attached]]:
+    """Reads a planning scene in YAML."""
+    yaml = library("yaml", "pyyaml", "reading a MoveIt planning scene")
+    try:
+        # "ros2 topic echo" ends each message with a line "---".
+        scene = yaml.safe_load(text.rstrip().removesuffix("---"))
     except (ValueError, RecursionError, yaml.YAMLError) as error:  # also for dates and integers that Python cannot hold
         raise InvalidInputError(f"{where}: not YAML: {error}") from error
     world = scene.get("world") if isinstance(scene, dict) else None
     if not isinstance(world, dict):
-        raise InvalidInputError(f'{where}: expected a MoveIt planning scene: a mapping with "world"')
-    _require_no_more(where, scene, world)
+        raise InvalidInputError(
+            f'{where}: expected a MoveIt planning scene: a mapping with "world", or the .scene text of RViz'
+        )
     objects = world.get("collision_objects") or []
     if not isinstance(objects, list):
         raise InvalidInputError(f'{where}: "collision_objects" must be a list')
-    frames = {str(_get(_get(found, "header", {}), "frame_id", "")) for found in objects if isinstance(found, dict)}
-    if len(frames) > 1:
-        named = ", ".join(f"'{name}'" for name in sorted(frames))
-        raise InvalidInputError(f"{where}: the objects are in several frames ({named}); only one can be read")
-    return [shape for i, found in enumerate(objects) for shape in _object(where, i, found, place)]
+    octomap = _get(world, "octomap", {})
+    maps = [octomap] if _get(_get(octomap, "octomap", {}), "data", None) else []
+    frames = placed_frames(where, scene, [*(found for found in objects if isinstance(found, dict)), *maps], place)
+    shapes = [shape for i, found in enumerate(objects) for shape in _object(where, i, found, frames)]
+    for found in maps:
+        at = frames[frame_of(found)]
+        origin = _pose(f"{where}: octomap", found["origin"]) if found.get("origin") else np.eye(4)
+        shapes += octomap_message(f"{where}: octomap", found["octomap"], at @ origin)
+    return shapes, _attached(where, scene)
 
 
-def _require_no_more(where: str, scene: dict[str, Any], world: dict[str, Any]) -> None:
-    """Refuses other contents than collision objects: the arm would run into anything left out."""
-    octomap = _get(_get(world, "octomap", {}), "octomap", {})
-    if _get(octomap, "data", None):
-        raise InvalidInputError(f"{where}: the octomap cannot be read: make a bik.obstacles.Grid or PointCloud of it")
-    attached = _get(_get(scene, "robot_state", {}), "attached_collision_objects", [])
-    if attached:
-        raise InvalidInputError(
-            f"{where}: the robot carries what is in attached_collision_objects: take that out of the file, "
-            "and use robot.with_attached(link, shape)"
-        )
+def _attached(where: str, scene: dict[str, Any]) -> list[Attached]:
+    """Reads what the robot carries, each shape in the frame of its link."""
+    entries = _get(_get(scene, "robot_state", {}), "attached_collision_objects", [])
+    if not isinstance(entries, list):
+        raise InvalidInputError(f'{where}: "attached_collision_objects" must be a list')
+    found: list[Attached] = []
+    for i, entry in enumerate(entries):
+        held = _get(entry, "object", None)
+        link, touch = _get(entry, "link_name", None), _get(entry, "touch_links", [])
+        if not (isinstance(held, dict) and isinstance(link, str) and isinstance(touch, list)):
+            raise InvalidInputError(
+                f'{where}: attached object {i}: expected a mapping with "link_name" and "object", got {entry!r:.60}'
+            )
+        name = str(held.get("id", f"attached_{i}"))
+        if frame_of(held) not in ("", link):
+            raise InvalidInputError(
+                f"{where}: object '{name}' on link '{link}' is given in the frame '{frame_of(held)}': "
+                "give it in the frame of the link"
+            )
+        shapes = _object(where, i, held, {frame_of(held): np.eye(4)})
+        try:
+            found += carried(link, name, shapes, tuple(map(str, touch)))
+        except BeetleIkError as error:
+            told = str(error)
+            raise InvalidInputError(told if told.startswith(where) else f"{where}: object '{name}': {told}") from error
+    return found
 
 
-def _object(where: str, number: int, found: Any, frame: NDArray[np.float64]) -> Iterator[Obstacle]:
+def _object(where: str, number: int, found: Any, frames: Mapping[str, NDArray[np.float64]]) -> Iterator[Obstacle]:
+    """Reads the shapes of an object; `frames` has the pose of each frame."""
     if not isinstance(found, dict):
         raise InvalidInputError(f"{where}: object {number} must be a mapping, got {found!r:.60}")
     name = f"{where}: object '{found.get('id', number)}'"
@@ -64,7 +102,8 @@ def _object(where: str, number: int, found: Any, frame: NDArray[np.float64]) -> 
         raise InvalidInputError(
             f"{name}: operation {found['operation']!r:.60}: only objects that are added can be read"
         )
-    at = frame @ _pose(name, found["pose"]) if found.get("pose") else frame
+    at = frames[frame_of(found)]
+    at = at @ _pose(name, found["pose"]) if found.get("pose") else at
     count = 0
     for shapes, poses in _LISTS:
         items, places = found.get(shapes) or [], found.get(poses) or []
@@ -73,39 +112,28 @@ def _object(where: str, number: int, found: Any, frame: NDArray[np.float64]) -> 
         for item, place in zip(items, places, strict=True):
             count += 1
             try:
-                yield _shape(name, shapes, item, at @ _pose(name, place))
+                shape = _shape(shapes, item, at @ _pose(name, place))
             except (BeetleIkError, AttributeError, LookupError, OverflowError, TypeError, ValueError) as error:
                 told = error if isinstance(error, BeetleIkError) else f"unreadable {shapes}: {error!r:.60}"
                 prefix = "" if str(told).startswith(where) else f"{name}: "
                 raise InvalidInputError(f"{prefix}{told}") from error
+            yield shape
     if count == 0:
         raise InvalidInputError(f"{name} has no primitives and no meshes")
 
 
-def _shape(name: str, kind: str, item: Any, at: NDArray[np.float64]) -> Obstacle:
+def _shape(kind: str, item: Any, at: NDArray[np.float64]) -> Obstacle:
     if kind == "meshes":
         if not item.get("vertices"):
-            raise InvalidInputError(
-                f"{name}: a mesh without vertices; files of meshes are not read: load them by trimesh"
-            )
+            raise InvalidInputError("a mesh without vertices; files of meshes are not read: load them by trimesh")
         vertices = np.array([_numbers(vertex, "xyz") for vertex in item["vertices"]])
         faces = [_get(face, "vertex_indices", face) for face in item["triangles"]]
-        return obstacles.Mesh(vertices @ at[:3, :3].T + at[:3, 3], faces)
+        return obstacles.Mesh(moved(vertices, at), faces)
     if kind == "planes":
-        raise InvalidInputError(f"{name}: a plane has two sides: use a bik.obstacles.HalfSpace or a thin Box")
+        raise two_sided()
     given = item["type"]
-    shape = _PRIMITIVES.get(given, given) if isinstance(given, int) else str(given).lower()
-    sizes = [float(size) for size in item["dimensions"]]
-    match shape, sizes:
-        case "box", [_, _, _]:
-            return obstacles.Box(at[:3, 3], sizes, at[:3, :3])
-        case "sphere", [radius]:
-            return obstacles.Sphere(at[:3, 3], radius)
-        case "cylinder", [height, radius]:
-            return obstacles.Cylinder(at[:3, 3], at[:3, 2], radius, height)
-        case (("box" | "sphere" | "cylinder"), _):
-            raise InvalidInputError(f"{name}: a {shape} with {len(sizes)} dimensions")
-    raise InvalidInputError(f"{name}: a primitive of type {shape!r:.60}; those that can be read: box, sphere, cylinder")
+    shape = _PRIMITIVES.get(given, str(given)) if isinstance(given, int) else str(given).lower()
+    return solid(shape, [float(size) for size in item["dimensions"]], at)
 
 
 def _pose(name: str, given: Any) -> NDArray[np.float64]:
@@ -119,16 +147,6 @@ def _pose(name: str, given: Any) -> NDArray[np.float64]:
         return pose(position, xyzw=orientation)
     except BeetleIkError as error:
         raise InvalidInputError(f"{name}: {error}") from error
-
-
-def _rigid(frame: ArrayLike) -> NDArray[np.float64]:
-    try:
-        matrix = np.asarray(frame, dtype=float)
-        if matrix.shape != (4, 4) or (matrix[3] != (0, 0, 0, 1)).any():
-            raise ValueError
-        return pose(matrix[:3, 3], matrix=matrix[:3, :3])
-    except (TypeError, ValueError) as error:
-        raise InvalidInputError(f"frame must be a pose (4, 4), got {frame!r:.60}") from error
 
 
 def _numbers(given: Any, names: str) -> list[float]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from .._core import BeetleIkError, InvalidInputError, LimitError, Robot, Trajectory, pose
+from ..calls.labelled import labelled
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,23 +20,26 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _PATH_POINTS = 500
+_ROUNDING = 1e-6  # excess over a limit, as a fraction of the range, that the library takes for rounding
 
 
 def configuration(robot: Robot, q: ArrayLike) -> Array:
     """Returns `q` as a new array (n,) of finite numbers."""
-    robot.fk(q)  # refuses other lengths and NaN
-    if np.ndim(q) != 1:
-        raise InvalidInputError(f"q must be one configuration ({robot.dof},), got shape {np.shape(q)}")
-    return _fixed(q)
+    ordered = q if labelled(q) is None else robot.q_from(q)
+    robot.fk(ordered)  # refuses other lengths and NaN
+    if np.ndim(ordered) != 1:
+        raise InvalidInputError(f"q must be one configuration ({robot.dof},), got shape {np.shape(ordered)}")
+    return _fixed(ordered)
 
 
 def inside_limits(robot: Robot, q: ArrayLike) -> Array:
-    """Returns `configuration`; an error if it is outside the position limits."""
+    """Returns `configuration` without rounding beyond the position limits; an error if it is outside them."""
     checked = configuration(robot, q)
     for name, value, low, high in zip(robot.joint_names, checked, robot.lower, robot.upper, strict=True):
-        if not low <= value <= high:
+        rounding = _ROUNDING * (high - low if np.isfinite(high - low) else 1.0)
+        if not low - rounding <= value <= high + rounding:
             raise LimitError(f"q: joint '{name}' at {value:.6g} is outside its limits [{low:.6g}, {high:.6g}]")
-    return checked
+    return _fixed(robot.clip(checked))
 
 
 def target_poses(target: Any, present: Targets) -> Targets:
@@ -96,6 +100,21 @@ def motion_of(result: Any) -> Trajectory | None:
     if isinstance(result, _core.ModelFreeResult):
         return Trajectory.from_samples(result.time, result.q)
     return None
+
+
+def in_joint_order(robot: Robot, motion: Trajectory) -> Trajectory:
+    """Returns `motion` with its joints in the order of q; one whose joints have none of the robot's names as it is.
+
+    Raises:
+        InvalidInputError: some joints have names of the robot's joints, and others do not.
+    """
+    names, joints = motion.joint_names, robot.joint_names
+    if names == joints or not set(names) & set(joints):
+        return motion
+    if sorted(names) != sorted(joints):
+        raise InvalidInputError(f"joints of the motion: {', '.join(names)}; those of the robot: {', '.join(joints)}")
+    order = [names.index(joint) for joint in joints]
+    return Trajectory(motion.time, motion.coefficients[:, order], joint_names=joints)
 
 
 def postures_of(result: Any) -> Array:

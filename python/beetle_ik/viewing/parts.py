@@ -14,7 +14,7 @@ from ..figures.style import BLACK, rgb
 from ..mapping import ReachabilityMap
 from .arm import DT
 from .camera import Camera
-from .checks import motion_of, postures_of
+from .checks import in_joint_order, motion_of, postures_of
 from .files import Program, SceneFiles
 from .handle import Handles
 from .joints import Joints
@@ -137,6 +137,8 @@ class Parts:
             self._reach.show(result)
             return
         motion = motion_of(result)
+        if motion is not None and len(motion.joint_names) == self._page.arm.robot.dof:
+            motion = in_joint_order(self._page.arm.robot, motion)
         self._require_fitting(postures_of(result) if motion is None else motion.q)
         if motion is None:
             self._show_postures(result)

@@ -32,10 +32,13 @@ def shown(robot: Robot, *, has_meshes: bool) -> tuple[Robot, list[str]]:
             places, added = "balls at the joints", [(link, origin, origin, radius) for link in robot.all_link_names]
         robot = robot.with_capsules([*robot.capsules, *added])
         notes.append(f"{lacking}: {places}, of radius {1e3 * radius:.0f} mm, take their place")
-    unlimited = np.isinf(robot.velocity_limit)
-    if unlimited.any():
-        robot = robot.with_limits(velocity=np.where(unlimited, _SPEED, robot.velocity_limit))
-        notes.append(f"{counted(int(unlimited.sum()), 'joint')} without a velocity limit: here {_SPEED:g} rad/s or m/s")
+    speed = robot.velocity_limit
+    for unknown, what in ((np.isinf(speed), "without a velocity limit"), (speed == 0, "with a velocity limit of 0")):
+        if unknown.any():
+            speed = np.where(unknown, _SPEED, speed)
+            notes.append(f"{counted(int(unknown.sum()), 'joint')} {what}: here {_SPEED:g} rad/s or m/s")
+    if np.any(speed != robot.velocity_limit):
+        robot = robot.with_limits(velocity=speed)
     return robot, notes
 
 

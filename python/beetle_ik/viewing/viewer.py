@@ -11,7 +11,7 @@ from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from ..calls.arguments import require
 from ..calls.wording import worded_call
 from ..installed.needs import library
-from ..scenes import Scene
+from ..scenes import Scene, obstacles_for
 from . import start
 from .address import free_port
 from .admission import Admission
@@ -115,7 +115,7 @@ class Viewer:
         if not seen:
             seen = drawn_looks(self.robot, start.middle(robot))
             notes += ["no meshes in the model: the arm is drawn along its joints"] if seen else []
-        scene = list(Scene(() if obstacles is None else obstacles))
+        scene = obstacles_for(robot, () if obstacles is None else obstacles)
         begin = start.configuration(self.robot, scene) if q is None else inside_limits(self.robot, q)
         line = None if path is None else path_points(path)
         library("viser", "viser", "the viewer", extra="view")
@@ -178,7 +178,7 @@ class Viewer:
 
     @obstacles.setter
     def obstacles(self, obstacles: Iterable[Obstacle]) -> None:
-        scene = list(Scene(obstacles))
+        scene = obstacles_for(self.robot, obstacles)
         with self._turns.between():
             self._arm.obstacles = scene
 

@@ -4,16 +4,20 @@ from importlib import import_module
 
 from ..attack import Attack
 from . import (
+    calibration,
     calls,
     clearance,
     command_line,
+    described,
     kinematics,
     motion,
+    own_points,
     readers,
     round_poses,
     searching,
     several,
     solving,
+    starts,
     streams,
     tracking,
     units,
@@ -21,8 +25,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, streams, motion, clearance, readers, xacro_files),
-    *(calls, command_line, units),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, own_points),
+    *(readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -198,6 +198,61 @@ class TimeOptimal(Attack):
             raise BrokenError("a right path is refused", error)
 
 
+class Recordings(Attack):
+    name = "recordings"
+    promise = "Time-optimal motions with a tolerance stay within it, keep their limits, and never take longer for more"
+    page = "planning"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        """Sines of a few joints in the steps of an encoder, with rests; hard ones have joints that never move, and jumps."""
+        n, rows = int(random.integers(1, 7)), int(random.integers(3, 200))
+        phase = random.uniform(0, 10) * np.linspace(0, 1, rows)[:, None] / random.uniform(0.5, 3, n) + random.normal(size=n)
+        step = float(random.choice([2 * np.pi / 4096, 1e-3, 0.01, 0.1]))
+        q = np.round(np.sin(phase) / step) * step
+        if hard:
+            q[:, random.random(n) < 0.3] = 0.5
+            q[random.integers(0, rows) :] += random.choice([0.0, step, 1.0])
+        at = int(random.integers(0, rows))
+        q = np.insert(q, at, np.repeat(q[at : at + 1], int(random.integers(0, 20)), axis=0), axis=0)
+        return {
+            "rows": [tuple(row) for row in q.tolist()],
+            "limits": typed.limits(random, -1, 2),
+            "jerk": bool(random.random() < 0.4),
+            "tolerance": float(random.choice([0.5, 1.0, 2.0, 10.0, random.uniform(0.1, 30)]) * step),
+            "wider": float(random.choice([1.0, 1.5, 2.0, 4.0])),
+        }
+
+    def program(self, case: Case) -> str:
+        kinds = ("velocity", "acceleration", "jerk")[: 3 if case["jerk"] else 2]
+        limits = ", ".join(f"{kind}={value}" for kind, value in zip(kinds, case["limits"], strict=False))
+        return (
+            f"rows = {case['rows']}\nlimits = bik.Limits({limits})\n"
+            "exact = bik.time_optimal(rows, limits)\n"
+            f"motion = bik.time_optimal(rows, limits, tolerance={case['tolerance']})\n"
+            f"wider = bik.time_optimal(rows, limits, tolerance={case['tolerance'] * case['wider']})"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        rows, motion = np.array(case["rows"]), left["motion"]
+        kinds = ("velocity", "acceleration", "jerk")[: 3 if case["jerk"] else 2]
+        limits = {kind: np.full(rows.shape[1], value) for kind, value in zip(kinds, case["limits"], strict=False)}
+        check_rates(motion, limits, 1e-7)
+        durations = [left[name].duration for name in ("wider", "motion", "exact")]
+        if durations != sorted(durations):
+            raise BrokenError("more tolerance takes longer", durations)
+        passed = motion.at(np.linspace(0, motion.duration, 4000))[0]
+        # Rows lie on the path; joints move little between two of 4,000 samples.
+        gap = np.abs(np.diff(passed, axis=0)).max()
+        missed = max(np.abs(passed - row).max(axis=1).min() for row in rows[:: max(1, len(rows) // 50)])
+        if missed > case["tolerance"] + gap:
+            raise BrokenError("the motion leaves its tolerance", (missed, case["tolerance"]))
+        return 1
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        if (np.ptp(np.array(case["rows"]), axis=0) > 0).any():
+            raise BrokenError("a recording is refused", error)
+
+
 def toppra_duration(points: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray) -> float | None:
     """How long toppra takes on the natural spline; None if it fails."""
     import toppra

@@ -92,6 +92,13 @@ class MoveitScene(SceneFile):
     call = "scene = bik.Scene.from_moveit({file!r})\nagain = scene"
 
 
+class Octomap(SceneFile):
+    name = "octomap"
+    promise = "A damaged octomap is read or refused by name"
+    folder = "octomap"
+    call = "scene = bik.Scene.from_octomap({file!r}, region=((-1, -1, -1), (1, 1, 1)))\nagain = scene"
+
+
 class Csv(SceneFile):
     name = "csv"
     promise = "A damaged CSV file is read or refused by name, and a motion that was read is written and read equal"
@@ -265,4 +272,4 @@ def samples() -> dict[str, bytes]:
     return _SAMPLES
 
 
-ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Csv(), Npz(), MapFile(), Mesh(), Stored()]
+ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Octomap(), Csv(), Npz(), MapFile(), Mesh(), Stored()]

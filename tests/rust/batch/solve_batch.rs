@@ -289,8 +289,6 @@ fn wrong_rows_are_named() {
     let text = says(&targets, &starts);
     assert!(text.starts_with("row 3: target is not a rigid transform: R'R differs from the identity by "), "{text}");
     targets[3] = targets[1];
-    let text = "row 4: start: joint 'panda_joint3' at 9 is outside its limits [-2.8973, 2.8973]";
-    assert_eq!(says(&targets, &starts), text);
     starts[4 * robot.dof() + 2] = NAN;
     assert_eq!(says(&targets, &starts), "row 4: start must be finite, but joint 'panda_joint3' is NaN");
     let says = "starts: expected 42 numbers, 6 rows (one per target) of 7 joints, got 35";

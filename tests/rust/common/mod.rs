@@ -5,6 +5,7 @@ pub mod chains;
 pub mod circles;
 pub mod executed_curve;
 
+use ikcore::limits::{Field, Limits, Profile};
 use ikcore::objective::{LeastSquares, Linearization};
 use ikcore::problem::Problem;
 use ikcore::rng;
@@ -15,6 +16,11 @@ use ikcore::task::{Aims, Criterion, Target};
 /// Built-in robot of this name.
 pub fn robot(name: &str) -> Robot {
     Robot::named(name).unwrap()
+}
+
+/// Limits of a robot without velocity limits that say that jumps within a tick are meant.
+pub fn jumping(robot: &Robot) -> Option<Limits> {
+    Some(Limits::of(robot).replace(Field::Velocity, vec![Profile::Constant(f64::INFINITY)]).unwrap())
 }
 
 /// Monitor that stops from its n-th poll on.

@@ -12,13 +12,14 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use crate::common::arms::two_arms;
-use crate::common::robot;
+use crate::common::{jumping, robot};
 use crate::interface::{interface, type_of};
 use crate::layers::imports::{Sources, rust_files};
 use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, solve_batch};
+use ikcore::calibration::{CalibrationOptions, Measured, PinholeCamera, calibrate};
 use ikcore::ik::{AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_tips};
 use ikcore::interrupt::{checkpoint, interruptible};
-use ikcore::limits::{Field, Limits, Profile, Sinusoid};
+use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack};
 use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};
 use ikcore::manipulability::{Motion, manipulability, manipulability_all};
 use ikcore::map::{MapGrid, MapLayout, MapOptions};
@@ -31,7 +32,7 @@ use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
     AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
-    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal,
+    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal, time_optimal_within,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;

@@ -354,7 +354,7 @@ fn an_open_mesh_is_said_to_have_no_inside() {
     let target = Target::Position([0.4, 0.1, 0.5]);
     let triangle = Shape::mesh(vec![[2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 0.0, 1.0]], vec![[0, 1, 2]]).unwrap();
     let found = solved(&robot, &target, &among(&[Shape::sphere([2.0; 3], 0.1).unwrap(), triangle]));
-    let end = " m clear of everything; the mesh of obstacle 1 is open, so that its inside is unknown";
+    let end = " m clear of all surfaces; the mesh of obstacle 1 is open, so that its inside is unknown";
     assert!(found.message().ends_with(end), "{}", found.message());
 }
 

@@ -155,7 +155,10 @@ fn what_cannot_be_held_is_named() {
     let held = "joints that it holds: lift, grip";
     assert_eq!(message(("grap", 0.0)), format!("robot 'tree' holds no joint 'grap' (did you mean 'grip'?); {held}"));
     assert_eq!(message(("elbow", 0.0)), format!("robot 'tree' holds no joint 'elbow' (it is entry 1 of q); {held}"));
-    assert_eq!(message(("grip", 0.05)), "hold: joint 'grip' at 0.05 is outside its limits [0, 0.04]");
+    assert_eq!(
+        message(("grip", 0.05)),
+        "hold: joint 'grip' at 0.05 is outside its limits [0, 0.04] by 0.01000 m: move it inside"
+    );
     assert_eq!(message(("grip", f64::NAN)), "held joints must be finite, but joint 'grip' is NaN");
     let bare = Robot::planar(&[1.0]).unwrap().with_held([("x", 0.0)]).unwrap_err().to_string();
     assert_eq!(bare, "robot 'planar1' holds no joint 'x'; joints that it holds: none");

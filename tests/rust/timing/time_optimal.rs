@@ -196,6 +196,20 @@ fn repeated_waypoints_of_polylines_count_once() {
 }
 
 #[test]
+fn rests_between_waypoints_have_no_length() {
+    let rested = [0.0, 0.0, 0.0, 0.0, 1.0, 0.5, 1.0, 0.5, 1.0, 0.5, 0.0, 1.0, 0.0, 1.0];
+    let moving = [0.0, 0.0, 1.0, 0.5, 0.0, 1.0];
+    for ends in [SplineEnds::Natural, SplineEnds::NotAKnot, SplineEnds::Clamped] {
+        assert_eq!(spline(2, &rested, ends), spline(2, &moving, ends));
+        let given =
+            |waypoints: &[f64], knots: &[f64]| JointPath::spline(names(2), waypoints, Some(knots), ends).unwrap();
+        // The intervals that move last 1 and 2; the others are rests.
+        let timed = given(&rested, &[5.0, 6.0, 7.0, 8.0, 9.0, 11.0, 12.0]);
+        assert_eq!(timed, given(&moving, &[5.0, 6.0, 8.0]));
+    }
+}
+
+#[test]
 fn narrow_blends_of_long_polylines_keep_the_limits() {
     // Speeding up takes as little of the duration as its rounding leaves.
     let mut rng = ikcore::rng::stream(7, 0);
@@ -231,8 +245,8 @@ fn mistakes_are_named() {
             "waypoints must be finite, but joint 'q1' of row 1 is NaN",
         ),
         (
-            JointPath::spline(two.clone(), &[0.0, 1.0, 2.0, 3.0, 2.0, 3.0], None, SplineEnds::Natural).map(drop),
-            "path: waypoint 2 is the same as waypoint 1: leave one of them out",
+            JointPath::spline(two.clone(), &[2.0, 3.0, 2.0, 3.0], None, SplineEnds::Natural).map(drop),
+            "path: all waypoints are the same: give at least two that differ",
         ),
         (
             JointPath::spline(two.clone(), &[0.0, 1.0, 2.0, 3.0], Some(&[0.0, 0.5, 1.0]), SplineEnds::Natural)
@@ -259,11 +273,11 @@ fn mistakes_are_named() {
         ),
         (
             timed(&[(Field::Acceleration, vec![1.0, 0.0])], TimingOptions::default()).map(drop),
-            "infeasible: the path moves joint 'q2' from 0 to 2, but its acceleration limit is 0",
+            "infeasible: the path moves joint 'q2', where the acceleration limit is 0: give an acceleration limit",
         ),
         (
             timed(&[standard.clone(), (Field::Velocity, vec![0.0, 1.0])], TimingOptions::default()).map(drop),
-            "infeasible: the path moves joint 'q1' from 0 to 1, but its velocity limit is 0",
+            "infeasible: the path moves joint 'q1', where the velocity limit is 0: give a velocity limit",
         ),
         (
             timed(&[standard.clone(), (Field::Velocity, vec![-1.0])], TimingOptions::default()).map(drop),
@@ -370,5 +384,19 @@ proptest! {
         let (chosen, fine) = (duration(TimingOptions::default()), duration(on_grid(5001)));
         prop_assert!(chosen <= fine * (1.0 + 2e-3), "{chosen} {fine}");
         prop_assert!(duration(on_grid(30)) >= fine * (1.0 - 1e-3));
+    }
+}
+
+#[test]
+fn where_all_joints_reverse_the_path_has_no_corner() {
+    // Slopes vanish there but for rounding, which is all that the sides can differ by.
+    let limits =
+        limits(&[(Field::Velocity, vec![1.0]), (Field::Acceleration, vec![5.0]), (Field::Jerk, vec![50.0])], 1)
+            .unwrap();
+    for step in [0.1, 0.3, 1e-3, 7.0] {
+        for rise in 1..40 {
+            let rows: Vec<f64> = (0..=rise).chain((0..rise).rev()).map(|i| step * f64::from(i) + 0.2).collect();
+            time_optimal(&spline(1, &rows, SplineEnds::Natural), &limits, &TimingOptions::default()).unwrap();
+        }
     }
 }

@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use crate::common::{message, robot};
+use crate::common::{jumping, message, robot};
 use ikcore::limits::{Field, Limits, Profile};
 use ikcore::nalgebra::{Matrix3, Rotation3, Vector3};
 use ikcore::path::{Circle, Path, Plane, Reference};
@@ -286,7 +286,7 @@ fn a_position_limit_that_outruns_braking_is_reported() {
 fn a_singular_posture_gets_no_step_where_there_is_none() {
     let arm = Robot::planar(&[1.0, 1.0]).unwrap();
     let rule = TickRule::WeightedPseudoInverse(WeightedPseudoInverse::default());
-    let options = TrackOptions { rule, ..TrackOptions::default() };
+    let options = TrackOptions { rule, limits: jumping(&arm), ..TrackOptions::default() };
     let mut session = Session::new(&arm, &[0.0, 0.0], 0.01, &options).unwrap();
     let step = session.step(&Target::Position([1.5, 0.0, 0.0]), &mut Unattended).unwrap();
     assert_eq!((step.status, session.q()), (Status::Improved, &[0.0, 0.0][..]));

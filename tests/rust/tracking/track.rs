@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use crate::common::circles::{
     DT, OFF5, OFF7, Task, beetle, circle, count, descent, five_links, iiwa, sinusoid, velocity_limits,
 };
-use crate::common::{bits, robot};
+use crate::common::{bits, jumping, robot};
 use ikcore::limits::{Field, LimitAt, Limits, Profile, Sinusoid};
 use ikcore::nalgebra::{Rotation3, Vector3};
 use ikcore::path::{Path, Polyline};
@@ -283,7 +283,7 @@ fn messages_say_how_it_went() {
         record.message().starts_with(&format!("in the band of 1.000e-6 m from t = {since} s on; worst error there "))
     );
     let far = Path::new(Polyline::new(&[[9.0, 0.0, 0.0], [9.0, 1.0, 0.0]], 1.0).unwrap()).sample(DT).unwrap();
-    let options = TrackOptions::default();
+    let options = TrackOptions { limits: jumping(&robot("planar5")), ..TrackOptions::default() };
     let record = track(&robot("planar5"), &far, Some(&[0.0; 5]), &options, &mut Unattended).unwrap();
     let advice = "move or turn the target into reach, or move the base";
     let why = "the path is out of reach by at least 4.055 m at t = 1 s";

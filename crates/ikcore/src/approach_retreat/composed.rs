@@ -11,7 +11,7 @@ use crate::free_path;
 use crate::message::Setting;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
-    END_RESERVE, EndName, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, configuration_at, joined,
+    END_RESERVE, EndName, EndTurns, Endpoint, Freed, Plan, PointToPointOptions, StraightLine, configuration_at, joined,
     least_clearance, no_usable_end, refuse_collision,
 };
 use crate::robot::Robot;
@@ -40,7 +40,7 @@ pub(crate) fn composed(
 ) -> Result<Plan> {
     let stopwatch = Stopwatch::start();
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
-    free_path::require_pace(robot, &limits)?;
+    limits.require_pace()?;
     let narrowed = space.map(|space| space.narrowed(END_RESERVE));
     let mut pieces = Pieces { robot, options, limits: &limits, space, narrowed: narrowed.as_ref(), evaluations: 0 };
     let way_out = if options.free_start { pieces.way_out(start)? } else { None };
@@ -114,6 +114,8 @@ impl<'a> Pieces<'a> {
             approach: None,
             retreat: None,
             free_start: false,
+            // The pieces join at given configurations.
+            end_turns: EndTurns::AsGiven,
             // The lines end at configurations.
             task: self.options.task.filter(|_| self.options.approach.is_none()),
             stop: self.options.stop.map(|stop| Stop { max_time: stop.max_time.map(left), ..stop }),

@@ -98,7 +98,9 @@ impl LineSearch<'_> {
     fn configurations(&mut self, name: EndName, end: &Endpoint, monitor: &mut dyn Monitor) -> Result<Vec<Vec<f64>>> {
         let target = match end {
             Endpoint::Configuration(q) => {
-                self.position_limits.require_inside(&name.of_target(), 0.0, q)?;
+                if name != EndName::Start {
+                    self.position_limits.admit(Some(self.tip.robot()), &name.of_target(), q)?;
+                }
                 return Ok(vec![q.clone()]);
             }
             Endpoint::Targets { targets, .. } => &targets[0],

@@ -80,7 +80,8 @@ impl<'a> StraightTip<'a> {
             let motion = scaled(&self.timed(&rows)?, self.limits)?;
             let violations = self.limits.violations(&motion);
             if let Some(violation) = violations.first() {
-                let (excess, hindrance) = (self.excess(&motion), beyond.get_or_insert_with(|| violation.to_string()));
+                let (excess, hindrance) =
+                    (self.excess(q, &motion), beyond.get_or_insert_with(|| violation.to_string()));
                 inset = (OVERSHOOT * excess).max(GROWTH * inset);
                 if excess <= 0.0 || inset > LARGEST_INSET {
                     return Ok(Err(hindrance.clone()));
@@ -97,11 +98,12 @@ impl<'a> StraightTip<'a> {
         }
     }
 
-    /// Largest excess of a joint over its position limits between configurations inside them (rad, m).
-    fn excess(&self, motion: &Trajectory) -> f64 {
+    /// Largest excess of a joint over its position limits, or its start `q` outside them, between configurations (rad, m).
+    fn excess(&self, q: &[f64], motion: &Trajectory) -> f64 {
         let ranges = motion.position_range().into_iter().enumerate();
-        let of_joint =
-            |(j, (low, high)): (usize, (f64, f64))| (self.limits.lower[j] - low).max(high - self.limits.upper[j]);
+        let of_joint = |(j, (low, high)): (usize, (f64, f64))| {
+            (self.limits.lower[j].min(q[j]) - low).max(high - self.limits.upper[j].max(q[j]))
+        };
         ranges.map(of_joint).fold(0.0, f64::max)
     }
 
@@ -128,7 +130,7 @@ impl<'a> StraightTip<'a> {
         intervals: usize,
         (place, inset): (&str, f64),
     ) -> Result<Vec<f64>, Hindrance> {
-        let [lower, upper] = self.limits.inset_positions(inset);
+        let [mut lower, mut upper] = self.limits.inset_positions(inset);
         let mut rows = q.to_vec();
         let mut here = q.to_vec();
         let mut linearization = Linearization::default();
@@ -136,6 +138,10 @@ impl<'a> StraightTip<'a> {
             let fraction = i as f64 / intervals as f64;
             let target = self.target(q, along, fraction);
             let before = here.clone();
+            // A joint that begins outside its limits may stay there, but goes no farther out.
+            for j in (0..here.len()).filter(|j| here[*j] < self.limits.lower[*j] || here[*j] > self.limits.upper[*j]) {
+                (lower[j], upper[j]) = (lower[j].min(here[j]), upper[j].max(here[j]));
+            }
             let solved = linearization.project(&mut here, [&lower, &upper], STEPS, |q, at| {
                 let there = target.linearize(&self.robot, q, &Criterion::default(), &mut at.first);
                 (!there.score.solved).then(|| at.least_damping(q.len()))

@@ -3,6 +3,8 @@
 //! Items share no mutable state: each draws from the stream of its row and writes to its own row. The bits of an item therefore
 //! depend neither on the number of threads nor on the other items.
 
+use std::borrow::Cow;
+
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -21,7 +23,7 @@ pub(super) struct Job<'a> {
     context: SolveContext<'a>,
     targets: Targets<'a>,
     starts: Option<&'a [f64]>,
-    common_start: Option<&'a [f64]>,
+    common_start: Option<Vec<f64>>,
     first_row: usize,
     dof: usize,
     rows_are_checked: bool,
@@ -47,9 +49,8 @@ impl<'a> Job<'a> {
             return Err(Error::out_of_range("first_row", "below 2^63", options.first_row as f64));
         }
         let context = SolveContext::new(robot, &options.each)?;
-        let common_start = options.each.start.as_deref();
-        common_start.map_or(Ok(()), |q| context.check_start(q))?;
-        context.require_reference(options.starts.or(common_start))?;
+        let common_start = options.each.start.as_deref().map(|q| context.hint(q).map(Cow::into_owned)).transpose()?;
+        context.require_reference(options.starts.or(common_start.as_deref()))?;
         let BatchOptions { starts, first_row, .. } = *options;
         Ok(Self { context, targets, starts, common_start, first_row, dof, rows_are_checked: false })
     }
@@ -72,17 +73,18 @@ impl<'a> Job<'a> {
             // Checks that the task supports this kind of target, and that targets of several tips agree.
             self.context.reduce(&mut self.targets.read(i))?;
         }
-        self.own_start(i).map_or(Ok(()), |start| self.context.check_start(start))
+        self.own_start(i).map_or(Ok(()), |start| self.context.check_hint(start))
     }
 
     /// Returns target `i` and its start, validated.
-    fn read(&self, i: usize) -> Result<(TargetRow, Option<&'a [f64]>)> {
+    fn read(&self, i: usize) -> Result<(TargetRow, Option<Cow<'_, [f64]>>)> {
         if !self.rows_are_checked {
             self.check(i)?;
         }
         let mut targets = self.targets.read(i);
         self.context.reduce(&mut targets)?;
-        Ok((targets, self.own_start(i).or(self.common_start)))
+        let own = self.own_start(i).map(|start| self.context.hint(start)).transpose()?;
+        Ok((targets, own.or_else(|| self.common_start.as_deref().map(Cow::Borrowed))))
     }
 
     /// Start given for target `i` alone.
@@ -109,6 +111,7 @@ impl<'a> Job<'a> {
             *item = match self.read(first + row) {
                 Err(_) => SolveReport::unsolved(Status::Invalid),
                 Ok((targets, start)) => {
+                    let start = start.as_deref();
                     let query =
                         Query { targets: &targets, start, stream: (self.first_row + first + row) as u64, stopwatch };
                     let solution = solve_query(&self.context, &query, monitor);

@@ -49,13 +49,21 @@ impl Batch {
     pub fn message(&self) -> Message {
         let mut counts = vec![0; Status::ALL.len()];
         self.items.iter().for_each(|item| counts[item.status as usize] += 1);
-        message_of_counts(&counts)
+        let mut own = self.items.iter().filter_map(|item| item.own_points);
+        let advice = own.next().map(|measured| (1 + own.count(), measured.advice()));
+        message_of(&counts, advice)
     }
 }
 
 /// Returns a sentence with the number of solved targets, and advice for the others, where `counts[status as usize]` targets
 /// ended with `status`.
 pub fn message_of_counts(counts: &[usize]) -> Message {
+    message_of(counts, None)
+}
+
+/// [`message_of_counts`]. Of the solutions in collision, `own` are so with what was measured of the robot itself: their number, and
+/// advice.
+fn message_of(counts: &[usize], own: Option<(usize, Message)>) -> Message {
     let count = |status: Status| counts.get(status as usize).copied().unwrap_or_default();
     let (solved, total) = (count(Status::Solved), counts.iter().sum::<usize>());
     if total == 0 {
@@ -64,7 +72,11 @@ pub fn message_of_counts(counts: &[usize]) -> Message {
     if solved == total {
         return format!("all {total} solved").into();
     }
-    let unsolved = Status::ALL[1..].iter().map(|status| (count(*status), status)).filter(|(count, _)| *count > 0);
-    let reasons = unsolved.map(|(count, status)| message![format!("{count} {}: ", status.name()), status.advice()]);
+    let with_itself = own.as_ref().map_or(0, |(count, _)| *count);
+    let others = |status: Status| count(status) - if status == Status::InCollision { with_itself } else { 0 };
+    let unsolved = Status::ALL[1..].iter().map(|status| (others(*status), *status, status.advice()));
+    let unsolved = unsolved.chain(own.map(|(count, advice)| (count, Status::InCollision, advice)));
+    let unsolved = unsolved.filter(|(count, ..)| *count > 0);
+    let reasons = unsolved.map(|(count, status, advice)| message![format!("{count} {}: ", status.name()), advice]);
     message![format!("{solved} of {total} solved; "), Message::joined(reasons, "; ")]
 }

@@ -59,11 +59,13 @@ pub(super) fn plan(
     if open.len() < FEW_PAIRS && !given {
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
     }
+    open.extend(search.other_ways(&open));
     let limits = search.limits;
     let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
     let most = most_kept(space, &open);
+    let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =
-        TreeSearch::new(scene, limits, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
+        TreeSearch::new(scene, ranges, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
@@ -96,14 +98,14 @@ pub(super) fn plan(
             let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let plan = with_least_clearance(plan, &mut sweep, margin)?;
-            let obstruction = if open.is_empty() {
+            let (obstruction, own_points) = if open.is_empty() {
                 no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
             } else {
                 let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
                 let straight = nearest.map(|nearest| &nearest.contact);
-                no_way::gap(trees.gap, trees.check.examined(), straight, margin)
+                (no_way::gap(trees.gap, trees.check.examined(), straight, margin), None)
             };
-            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), ..plan }
+            Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), own_points, ..plan }
         }
     };
     plan.surroundings = (!is_lines).then(|| space.surroundings());

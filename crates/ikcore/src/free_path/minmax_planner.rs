@@ -3,7 +3,7 @@
 use super::moving_start::Beginning;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::without_obstacles;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::free_path::{among_obstacles, moving_start};
 use crate::message::Setting;
 use crate::obstacle::ClearSpace;
@@ -25,7 +25,7 @@ pub(crate) fn point_to_point(
 ) -> Result<Plan> {
     let deadline = Deadline::start(options.stop.as_ref());
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
-    require_pace(robot, &limits)?;
+    limits.require_pace()?;
     let mut search = PairSearch::new(robot, &limits, start, ends, options, deadline)?;
     if let Some(velocity) = &options.start_velocity {
         match moving_start::begin(&mut search, velocity, space, options, monitor)? {
@@ -42,15 +42,5 @@ pub(crate) fn point_to_point(
     match space {
         Some(space) => among_obstacles::plan(&mut search, space, options, monitor),
         None => without_obstacles(&mut search, options.objective, monitor),
-    }
-}
-
-/// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
-pub(crate) fn require_pace(robot: &Robot, limits: &ConstantLimits) -> Result<()> {
-    let unlimited =
-        |j: &usize| [limits.velocity[*j], limits.acceleration[*j], limits.jerk[*j]].iter().all(|x| x.is_infinite());
-    match (0..robot.dof()).find(unlimited) {
-        None => Ok(()),
-        Some(j) => Err(Error::no_pace(limits.joint_name(j))),
     }
 }

@@ -33,4 +33,4 @@ mod rrt_connect;
 mod shortening;
 mod straight_line_plan;
 
-pub(crate) use minmax_planner::{point_to_point, require_pace};
+pub(crate) use minmax_planner::point_to_point;

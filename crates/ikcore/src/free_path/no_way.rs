@@ -1,11 +1,13 @@
 //! Reasons why there is no clear motion: a blocked end, or the gap left by the search.
 
 use super::end_pair::EndPair;
-use crate::obstacle::{Contact, Scene};
+use crate::obstacle::{Contact, Measured, Scene};
 use crate::wording::number;
 
 /// Names the obstruction where none of `pairs` has two clear ends, which keep `kept` (m) from everything.
-pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> String {
+///
+/// Also returns what was measured of the robot itself, if that blocks the start.
+pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> (String, Option<Measured>) {
     let is_clear = |q: &[f64]| scene.is_clear(q, kept);
     let start_is_blocked = !pairs.iter().any(|pair| is_clear(&pair.start));
     let name = if start_is_blocked { "start" } else { "end" };
@@ -14,8 +16,9 @@ pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> Strin
         scene.nearest(q).ok().flatten()
     };
     let clearest = pairs.iter().filter_map(nearest).max_by(|one, other| one.distance.total_cmp(&other.distance));
+    let own_points = clearest.as_ref().filter(|_| start_is_blocked).and_then(Contact::measured);
     let found = clearest.map_or(String::new(), |contact| format!("; at the clearest one {}", contact.in_words(kept)));
-    format!("{name}: no configuration was found that is clear of everything{found}")
+    (format!("{name}: no configuration was found that is clear of everything{found}"), own_points)
 }
 
 /// Describes the gap `left` between the trees from both ends after `examined` configurations, and the obstacle to the

@@ -7,7 +7,7 @@ use crate::free_path::least_displacement;
 use crate::ik::{Solution, SolveOptions, solve};
 use crate::limits::Limits;
 use crate::objective::Point;
-use crate::plan::{Cost, Deadline, EndName, Endpoint, Improvement, Plan, PointToPointOptions, no_usable_end};
+use crate::plan::{Cost, Deadline, EndName, EndTurns, Endpoint, Improvement, Plan, PointToPointOptions, no_usable_end};
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
@@ -28,6 +28,7 @@ pub(super) struct PairSearch<'a> {
     pub deadline: Deadline,
     pub seed: u64,
     pub position_limits: Limits,
+    end_turns: EndTurns,
     freedom: Freedom<'a>,
 }
 
@@ -36,7 +37,7 @@ const RANDOM_EVALUATIONS: usize = 500_000;
 
 impl<'a> PairSearch<'a> {
     /// # Errors
-    /// [`Error::OutsideLimits`] for a start outside the limits.
+    /// None in practice: the limits were checked.
     pub(super) fn new(
         robot: &'a Robot,
         limits: &'a ConstantLimits,
@@ -48,7 +49,7 @@ impl<'a> PairSearch<'a> {
         let position_limits = limits.position_limits(robot)?;
         let (task, seed) = (options.task, options.seed);
         let freedom = Freedom::new(robot, limits, task)?;
-        let search = Self {
+        Ok(Self {
             robot,
             limits,
             start,
@@ -59,10 +60,9 @@ impl<'a> PairSearch<'a> {
             deadline,
             seed,
             position_limits,
+            end_turns: options.end_turns,
             freedom,
-        };
-        search.require_inside(EndName::Start, start)?;
-        Ok(search)
+        })
     }
 
     /// The name of an end in messages.
@@ -167,9 +167,33 @@ impl<'a> PairSearch<'a> {
         Ok(pairs)
     }
 
-    pub(super) fn pair(&self, start: Point, end: Point, chosen: usize) -> EndPair {
+    /// The pair of `start` and `end`, which is brought to the whole turns that the options ask for.
+    pub(super) fn pair(&self, start: Point, mut end: Point, chosen: usize) -> EndPair {
+        if self.end_turns == EndTurns::Nearest && matches!(self.ends[chosen], Endpoint::Configuration(_)) {
+            self.robot.turn_near([&self.limits.lower, &self.limits.upper], &start, &mut end);
+        }
+        self.pair_as_is(start, end, chosen)
+    }
+
+    fn pair_as_is(&self, start: Point, end: Point, chosen: usize) -> EndPair {
         let duration = self.limits.quintic_duration(start.iter().zip(&end).map(|(start, end)| end - start));
         EndPair { start, end, chosen, duration }
+    }
+
+    /// Returns the pairs whose end configuration is one whole turn farther for one joint: the other way round.
+    pub(super) fn other_ways(&self, pairs: &[EndPair]) -> Vec<EndPair> {
+        let [lower, upper] = [&self.limits.lower, &self.limits.upper];
+        let mut others = vec![];
+        let turned = |pair: &&EndPair| matches!(self.ends[pair.chosen], Endpoint::Configuration(_));
+        for pair in pairs.iter().filter(turned).filter(|_| self.end_turns == EndTurns::Nearest) {
+            for j in (0..pair.end.len()).filter(|j| self.robot.turns_freely(*j, [lower[*j], upper[*j]])) {
+                let Some(period) = self.robot.turn_period(j) else { continue };
+                let mut end = pair.end.clone();
+                end[j] += if end[j] > pair.start[j] { -period } else { period };
+                others.push(self.pair_as_is(pair.start.clone(), end, pair.chosen));
+            }
+        }
+        others
     }
 
     /// Options of a solve for an end.
@@ -181,7 +205,9 @@ impl<'a> PairSearch<'a> {
     /// Checks that a configuration is inside the limits.
     fn require_inside(&self, name: EndName, end: &Endpoint) -> Result<()> {
         match end {
-            Endpoint::Configuration(q) => self.position_limits.require_inside(&name.of_target(), 0.0, q),
+            Endpoint::Configuration(q) => {
+                self.position_limits.admit(Some(self.robot), &name.of_target(), q).map(|_| ())
+            }
             Endpoint::Targets { .. } => Ok(()),
         }
     }

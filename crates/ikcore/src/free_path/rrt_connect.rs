@@ -3,9 +3,11 @@
 
 use super::configuration_tree::ConfigurationTree;
 use crate::math::vector::write_between;
+use crate::objective::Point;
 use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
 use crate::rng::LazyRng;
+use crate::robot::{Joint, Robot};
 use crate::solver::Monitor;
 use crate::timing::{ConstantLimits, JointPolyline};
 
@@ -58,14 +60,34 @@ pub(super) struct TreeSearch<'a> {
 impl<'a> TreeSearch<'a> {
     pub(super) fn new(
         scene: &'a Scene<'a>,
-        limits: &ConstantLimits,
+        ranges: Vec<(f64, f64)>,
         margin: f64,
         budget: usize,
         deadline: Deadline,
     ) -> Self {
-        let joints = scene.robot().joints().iter().enumerate();
-        let ranges = joints.map(|(j, joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j])).collect();
         Self { check: SampledLine::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+    }
+
+    /// Ranges of the joints of `robot` for a search between configurations `ends`: that of a joint without limits contains all of
+    /// its values there.
+    pub(super) fn ranges<'e>(
+        robot: &Robot,
+        limits: &ConstantLimits,
+        ends: impl Iterator<Item = &'e Point>,
+    ) -> Vec<(f64, f64)> {
+        let within = |(j, joint): (usize, &Joint)| joint.sampling_range_within(limits.lower[j], limits.upper[j]);
+        let mut ranges: Vec<(f64, f64)> = robot.joints().iter().enumerate().map(within).collect();
+        for end in ends {
+            for (j, (range, q)) in ranges.iter_mut().zip(end).enumerate() {
+                let ((lower, upper), beside) = (limits.open_range(j), 0.5 * (range.1 - range.0));
+                if *q < range.0 {
+                    range.0 = lower.max(q - beside).min(range.0);
+                } else if *q > range.1 {
+                    range.1 = upper.min(q + beside).max(range.1);
+                }
+            }
+        }
+        ranges
     }
 
     /// Whether a budget is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on them.

@@ -248,6 +248,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             status,
             error,
             obstruction: String::new(),
+            own_points: None,
             nearest: None,
             iterations: self.budget.iterations,
             restarts: self.budget.restarts,

@@ -163,13 +163,36 @@ impl<'a> SolveContext<'a> {
         reduce(self.robot, &self.tasks, targets)
     }
 
+    /// Takes a start, which is a hint: outside the limits, each joint is brought inside by whole turns or, where none does, to its
+    /// nearest limit.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] or [`Error::NotFinite`].
+    pub(crate) fn hint<'q>(&self, q: &'q [f64]) -> Result<Cow<'q, [f64]>> {
+        self.check_hint(q)?;
+        let [lower, upper] = self.bounds.ends();
+        let is_inside = (0..q.len()).all(|j| lower[j] <= q[j] && q[j] <= upper[j]);
+        Ok(if is_inside { Cow::Borrowed(q) } else { Cow::Owned(self.brought_inside(q)) })
+    }
+
     /// Checks a start.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`] or [`Error::OutsideLimits`].
-    pub(crate) fn check_start(&self, q: &[f64]) -> Result<()> {
-        self.robot().check("start", q)?;
-        self.robot().require_within("start", q, self.bounds.lower(), self.bounds.upper())
+    /// As [`hint`](Self::hint).
+    pub(crate) fn check_hint(&self, q: &[f64]) -> Result<()> {
+        self.robot().check("start", q)
+    }
+
+    #[cold]
+    fn brought_inside(&self, q: &[f64]) -> Vec<f64> {
+        let [lower, upper] = self.bounds.ends();
+        let joint = |(j, value): (usize, &f64)| {
+            let limits = [lower[j], upper[j]];
+            let is_inside = lower[j] <= *value && *value <= upper[j];
+            let turned = if is_inside { None } else { self.robot().turned_inside(j, *value, None, limits) };
+            turned.unwrap_or(*value).clamp(lower[j], upper[j])
+        };
+        q.iter().enumerate().map(joint).collect()
     }
 
     /// Checks that the preference for the nearest solution comes with a start.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::message::{Message, message};
 use crate::objective::Point;
-use crate::obstacle::{ClearSpace, Clearance, Surroundings, clear_in_words};
+use crate::obstacle::{ClearSpace, Clearance, Measured, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::TipError;
@@ -31,6 +31,8 @@ pub struct SolveReport {
     pub error: TipError,
     /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
+    /// What was measured of the robot itself, if that keeps the solution in collision.
+    pub own_points: Option<Measured>,
     /// Nearest two bodies, if obstacles or self-collision were checked; `None` while deferred by
     /// [`SolveOptions::nearest_later`](super::SolveOptions).
     pub nearest: Option<Box<Nearest>>,
@@ -96,6 +98,7 @@ impl SolveReport {
             status,
             error: TipError { position: f64::NAN, rotation: f64::NAN },
             obstruction: String::new(),
+            own_points: None,
             nearest: None,
             iterations: 0,
             restarts: 0,
@@ -119,7 +122,7 @@ impl SolveReport {
         let ended = match status {
             Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
             Status::InCollision => {
-                return message![format!("reached to {error}, but {obstruction}: "), status.advice()];
+                return message![format!("reached to {error}, but {obstruction}: "), self.clear_advice()];
             }
             Status::Improved => return format!("below the requested value, {error} away").into(),
             Status::OutOfReach => "as near as possible,",
@@ -133,6 +136,19 @@ impl SolveReport {
         };
         let why = if obstruction.is_empty() { String::new() } else { format!(" ({obstruction})") };
         message![format!("{ended} {error} away{why}: "), status.advice()]
+    }
+
+    /// Advice for a solution in collision.
+    fn clear_advice(&self) -> Message {
+        let nearest = self.nearest.as_ref().and_then(|nearest| nearest.clearance.nearest.as_ref());
+        match (self.own_points, nearest.and_then(|nearest| nearest.contact.measured())) {
+            (Some(measured), _) => measured.advice(),
+            (None, Some(measured)) => message![
+                measured.advice(),
+                "; if there are none, choose another target, clear what is in the way, or lower the margin"
+            ],
+            (None, None) => self.status.advice(),
+        }
     }
 
     /// Clearance as the end of a sentence; empty if nothing was checked.

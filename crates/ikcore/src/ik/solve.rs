@@ -56,9 +56,9 @@ pub fn solve_tips(
 ) -> Result<Solution> {
     let stopwatch = Stopwatch::start();
     let context = SolveContext::new(robot, options)?;
-    let start = options.start.as_deref();
     let targets = context.read(targets)?;
-    start.map_or(Ok(()), |q| context.check_start(q))?;
+    let start = options.start.as_deref().map(|q| context.hint(q)).transpose()?;
+    let start = start.as_deref();
     context.require_reference(start)?;
     Ok(solve_query(&context, &Query { targets: &targets, start, stream: 0, stopwatch }, monitor))
 }

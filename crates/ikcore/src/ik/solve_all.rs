@@ -130,6 +130,7 @@ impl SolutionSet {
             status: Status::Solved,
             error,
             obstruction: String::new(),
+            own_points: None,
             nearest: self.nearest.as_ref().and_then(|nearest| nearest.get(i).cloned()).map(Box::new),
             iterations: self.iterations,
             restarts: self.restarts,
@@ -174,9 +175,9 @@ pub fn solve_all_tips(
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
     limit.map_or(Ok(()), |limit| require_at_least_one("limit", limit))?;
     let context = SolveContext::new(robot, each)?;
-    let start = each.start.as_deref();
     let targets = context.read(targets)?;
-    start.map_or(Ok(()), |q| context.check_start(q))?;
+    let start = each.start.as_deref().map(|q| context.hint(q)).transpose()?;
+    let start = start.as_deref();
     let mut problem = context.problem(&targets);
     let mut rng = rng::stream(each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
@@ -242,8 +243,8 @@ pub fn nearest_miss(
     let mut problem = context.problem(&targets);
     let mut rng = rng::stream(options.each.seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
-    let start = options.each.start.as_deref();
-    let reference = start.map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
+    let start = options.each.start.as_deref().map(|q| context.hint(q)).transpose()?;
+    let reference = start.as_deref().map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
     Ok(attempt.approached(&reference, APPROACHES))
 }
 

@@ -21,6 +21,9 @@ pub struct Limits {
     pub(super) velocity: Vec<Profile>,
     pub(super) acceleration: Option<Vec<Profile>>,
     pub(super) jerk: Option<Vec<Profile>>,
+    /// Whether the velocity limits are those of the robot. Infinite ones that were given are meant.
+    #[serde(skip)]
+    pub(super) own_velocity: bool,
 }
 
 impl Limits {
@@ -34,6 +37,7 @@ impl Limits {
             velocity: joints.iter().map(|joint| Profile::Constant(joint.velocity)).collect(),
             acceleration: None,
             jerk: None,
+            own_velocity: true,
         }
     }
 
@@ -60,7 +64,7 @@ impl Limits {
     pub fn none(joints: Vec<String>) -> Self {
         let all = |value: f64| vec![Profile::Constant(value); joints.len()];
         let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
-        Self { joints, lower, upper, velocity, acceleration: None, jerk: None }
+        Self { joints, lower, upper, velocity, acceleration: None, jerk: None, own_velocity: false }
     }
 
     /// Replaces one field for all joints, with one profile per joint or a single one for all of them.
@@ -83,7 +87,7 @@ impl Limits {
         match field {
             Field::Lower => self.lower = profiles,
             Field::Upper => self.upper = profiles,
-            Field::Velocity => self.velocity = profiles,
+            Field::Velocity => (self.velocity, self.own_velocity) = (profiles, false),
             Field::Acceleration => self.acceleration = Some(profiles),
             Field::Jerk => self.jerk = Some(profiles),
         }
@@ -232,25 +236,5 @@ impl Limits {
         }
         let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
         Err(Error::WrongLength { what: what.into(), expected, got: self.joints.len() })
-    }
-
-    /// Checks that `q` is within the position limits at time `t` (s); `what` names it in the error.
-    ///
-    /// # Errors
-    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
-    pub fn require_inside(&self, what: &str, t: f64, q: &[f64]) -> Result<()> {
-        for (i, joint) in self.joints.iter().enumerate() {
-            let (lower, upper) = (self.lower[i].at(t), self.upper[i].at(t));
-            if !(lower <= q[i] && q[i] <= upper) {
-                return Err(Error::OutsideLimits {
-                    what: what.into(),
-                    joint: joint.clone(),
-                    value: q[i],
-                    lower,
-                    upper,
-                });
-            }
-        }
-        Ok(())
     }
 }

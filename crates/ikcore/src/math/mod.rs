@@ -10,18 +10,20 @@
 //! | `arithmetic`, `f64x4`, `f32x8`, `real` | instructions and lanes |
 //! | `sincos`, `arctangent`, `logarithm`, `comparison` | functions without branches |
 //! | `columns` | columns of Jacobians |
-//! | `gram`, `ldl`, `singular_values` | small linear systems |
+//! | `gram`, `ldl`, `banded`, `singular_values` | small linear systems, and banded ones |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
-//! | `polynomial`, `hermite`, `cubic_spline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
+//! | `polynomial`, `hermite`, `cubic_spline`, `cubic_bspline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
 
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
+pub(crate) mod banded;
 pub mod block_step;
 pub mod box_step;
 mod columns;
 pub(crate) mod comparison;
+pub(crate) mod cubic_bspline;
 pub(crate) mod cubic_spline;
 pub(crate) mod f32x8;
 pub(crate) mod f64x4;

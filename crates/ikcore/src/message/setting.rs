@@ -34,6 +34,14 @@ pub enum Setting {
     StartVelocity,
     /// Configuration at the start.
     StartConfiguration,
+    /// Values of other joints passed over.
+    IgnoreExtra,
+    /// Distance beyond a limit in which a start is taken.
+    StartSlack,
+    /// Whole turns taken off, which brings a joint inside its limits.
+    Wrap,
+    /// Joint moved to its limit, which changes the pose.
+    Clip,
     /// New timing of a plan.
     Retime,
     /// Distance to keep.
@@ -59,6 +67,10 @@ pub enum Setting {
     MoreCapsules,
     /// Capsules of one radius along the links.
     CapsulesAlongLinks,
+    /// Robot that carries what is attached to it in a scene.
+    Attach,
+    /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
+    WithoutRobot(&'static str),
     /// Angles that are converted from degrees before a call.
     RadiansFromDegrees,
     /// Angles that a call takes in degrees.
@@ -85,6 +97,10 @@ impl fmt::Display for Setting {
             Self::FreeStart => "free_start",
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",
+            Self::IgnoreExtra => "ignoring extra names",
+            Self::StartSlack => "start slack",
+            Self::Wrap => "whole turns taken off bring it inside",
+            Self::Clip => "moving it to the limit changes the pose",
             Self::Retime => "a new timing of the plan",
             Self::Margin => "a margin",
             Self::Surroundings => "obstacles (perhaps none) or self-collision",
@@ -97,6 +113,8 @@ impl fmt::Display for Setting {
             Self::CapsulesAlone => "giving it the capsules that it has",
             Self::MoreCapsules => "giving it more of them",
             Self::CapsulesAlongLinks => "with_capsules_along_links",
+            Self::Attach => "a robot that carries it",
+            Self::WithoutRobot(_) => "without_robot",
             Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }

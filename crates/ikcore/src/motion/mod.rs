@@ -47,5 +47,5 @@ pub(crate) use moving_goal::{GoalSample, MovingGoal};
 pub(crate) use pursuit::Pursuit;
 pub(crate) use reachable_set::ReachableSet;
 pub(crate) use state_to_state::meet;
-pub use state_to_state::{state_to_state, stop};
+pub use state_to_state::{state_to_state, state_to_state_from, stop};
 pub(crate) use stop_curve::StopCurve;

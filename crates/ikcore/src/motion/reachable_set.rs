@@ -135,6 +135,8 @@ impl ReachableSet {
             let stop = braking.stop(step, change);
             let time = self.dt * stop.ticks;
             let [floor, ceiling] = limits.position_range(*j, 0.0, time);
+            // A start outside, taken by the gate, may stop there, but go no farther out.
+            let (floor, ceiling) = (floor.min(q[*j]), ceiling.max(q[*j]));
             let rounding = CROSSING * q[*j].abs().max(1.0);
             let room =
                 Room { below: q[*j] - floor, above: ceiling - q[*j], step: self.dt * velocity.smallest(0.0, time).1 };

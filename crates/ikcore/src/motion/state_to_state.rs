@@ -3,7 +3,7 @@
 use super::arm_state::ArmState;
 use super::synchronised::Synchronised;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, ROUNDING};
+use crate::limits::{Field, Limits, ROUNDING, StartSlack};
 use crate::math::one_joint::{MotionState, Rates, Transfer};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -23,12 +23,20 @@ const METHOD: &str = "state_to_state";
 /// reached inside the limits or a motion that leaves the position limits, [`Error::InvalidTrajectory`] for states that
 /// are the same.
 pub fn state_to_state(from: &ArmState, to: &ArmState, limits: &Limits) -> Result<Trajectory> {
+    state_to_state_from(from, to, limits, &StartSlack::default())
+}
+
+/// [`state_to_state`] from a start up to `slack` outside the position limits, which is led inside.
+///
+/// # Errors
+/// As [`state_to_state`].
+pub fn state_to_state_from(from: &ArmState, to: &ArmState, limits: &Limits, slack: &StartSlack) -> Result<Trajectory> {
     let joints = limits.joint_names();
     from.check(0, joints)?;
     to.check(1, joints)?;
     let rates = rates(limits)?;
-    limits.require_inside("q0", 0.0, &from.q)?;
-    limits.require_inside("q1", 0.0, &to.q)?;
+    let from = &ArmState { q: limits.admit_start(None, "q0", &from.q, slack)?.q, ..from.clone() };
+    let to = &ArmState { q: limits.admit(None, "q1", &to.q)?, ..to.clone() };
     for (j, rates) in rates.iter().enumerate() {
         require_reachable(&joints[j], &to.joint(j), rates)?;
     }
@@ -41,7 +49,7 @@ pub fn state_to_state(from: &ArmState, to: &ArmState, limits: &Limits) -> Result
         let problem = "q0 and q1, with their velocities and accelerations, are the same state: nothing moves".into();
         return Err(Error::InvalidTrajectory { problem });
     }
-    require_room(limits, &motion)?;
+    require_room(limits, &from.q, &motion)?;
     motion.trajectory(joints.to_vec()).map_err(|_| too_long(&motion))
 }
 
@@ -66,7 +74,7 @@ pub(crate) fn meet(from: &ArmState, to: &ArmState, limits: &Limits, duration: f6
     };
     let transfers: Vec<Transfer> = rates.iter().enumerate().map(transfer).collect::<Option<_>>()?;
     let motion = Synchronised::lasting(&transfers, duration)?;
-    require_room(limits, &motion).ok()?;
+    require_room(limits, &from.q, &motion).ok()?;
     motion.trajectory(joints.to_vec()).ok()
 }
 
@@ -79,38 +87,29 @@ pub fn stop(from: &ArmState, limits: &Limits) -> Result<Trajectory> {
     let joints = limits.joint_names();
     from.check(0, joints)?;
     let rates = rates(limits)?;
-    limits.require_inside("q0", 0.0, &from.q)?;
     let states: Vec<_> = (0..joints.len()).map(|j| from.joint(j)).collect();
     let motion = Synchronised::stop(&states, &rates).filter(|motion| motion.duration() > 0.0);
     let at_rest = || Error::InvalidTrajectory { problem: "the arm is at rest: nothing has to stop".into() };
     let motion = motion.ok_or_else(at_rest)?;
-    require_room(limits, &motion)?;
+    require_room(limits, &from.q, &motion)?;
     motion.trajectory(joints.to_vec())
 }
 
 /// The limits of each joint on velocity, acceleration and jerk.
 fn rates(limits: &Limits) -> Result<Vec<Rates>> {
     limits.validate(0.0, 0)?;
-    let joints = limits.joint_names();
     let constants = |field: Field| -> Result<Vec<f64>> {
         let mut values = limits.constants(field, METHOD, "give numbers")?;
-        values.resize(joints.len(), f64::INFINITY);
-        match values.iter().position(|value| *value <= 0.0) {
-            None => Ok(values),
-            Some(j) => {
-                Err(Error::out_of_range(format!("{field} limit of joint '{}'", joints[j]), "positive", values[j]))
-            }
-        }
+        values.resize(limits.dof(), f64::INFINITY);
+        Ok(values)
     };
     let [velocity, acceleration, jerk] =
         [constants(Field::Velocity)?, constants(Field::Acceleration)?, constants(Field::Jerk)?];
     constants_of_position(limits)?;
+    limits.require_unlocked()?;
+    limits.require_pace()?;
     let of_joint = |j: usize| Rates { velocity: velocity[j], acceleration: acceleration[j], jerk: jerk[j] };
-    let unlimited = |j: &usize| [velocity[*j], acceleration[*j], jerk[*j]].iter().all(|limit| limit.is_infinite());
-    match (0..joints.len()).find(unlimited) {
-        None => Ok((0..joints.len()).map(of_joint).collect()),
-        Some(j) => Err(Error::no_pace(&joints[j])),
-    }
+    Ok((0..limits.dof()).map(of_joint).collect())
 }
 
 /// Checks that the position limits do not vary over time.
@@ -152,10 +151,11 @@ fn require_reachable(joint: &str, to: &MotionState, rates: &Rates) -> Result<()>
     Ok(())
 }
 
-/// Checks that the motion stays inside the position limits.
-fn require_room(limits: &Limits, motion: &Synchronised) -> Result<()> {
+/// Checks that the motion stays inside the position limits. A joint whose `start` is outside goes no farther out.
+fn require_room(limits: &Limits, start: &[f64], motion: &Synchronised) -> Result<()> {
     for (j, (lowest, highest)) in motion.ranges().enumerate() {
         let [lower, upper] = limits.position_range(j, 0.0, 0.0);
+        let (lower, upper) = (lower.min(start[j]), upper.max(start[j]));
         let rounding = ROUNDING * lowest.abs().max(highest.abs()).max(1.0);
         let joint = limits.joint_name(j);
         for (position, limit, outside, side) in

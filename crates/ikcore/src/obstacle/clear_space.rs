@@ -34,8 +34,8 @@ impl Surroundings {
     /// Those of [`Scene::new`]; [`Error::OutOfRange`] for a margin that is negative or not finite; [`Error::Contradiction`] for a
     /// margin without anything to keep it from.
     pub fn clear_space<'a>(&self, robot: impl Into<SceneRobot<'a>>) -> Result<Option<ClearSpace<'a>>> {
-        let margin = self.kept_margin()?;
-        if !self.is_given() {
+        let (margin, robot) = (self.kept_margin()?, robot.into());
+        if !self.apply_to(&robot) {
             let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
             return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
         }

@@ -40,7 +40,8 @@ pub(crate) fn clear_in_words(clearance: Option<&Clearance>, open_mesh: Option<us
     let clear = match clearance {
         Some(Clearance { distance, nearest }) if *distance < f64::INFINITY => {
             let at_least = if nearest.is_none() { "at least " } else { "" };
-            format!(", {at_least}{} m clear of everything", number(*distance))
+            let of = if open_mesh.is_none() { "everything" } else { "all surfaces" };
+            format!(", {at_least}{} m clear of {of}", number(*distance))
         }
         _ => ", with nothing to touch".into(),
     };

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::Message;
 use crate::wording::number;
 
 /// The body that a link is near.
@@ -58,9 +59,13 @@ impl Contact {
         format!("link '{}' is {} {}", self.link, self.depth(kept), self.other)
     }
 
-    /// Advice to allow the contact, where the robot stands on the other body.
-    pub(crate) fn remedy(&self) -> String {
-        format!("if the robot stands there, put '{}' into the obstacle's touch", self.link)
+    /// Advice for a body that no joint moves: to take the robot out of what was measured, or to allow the contact, where the robot
+    /// stands on the other body.
+    pub(crate) fn remedy(&self) -> Message {
+        match self.measured() {
+            Some(measured) => measured.advice(),
+            None => format!("if the robot stands there, put '{}' into the obstacle's touch", self.link).into(),
+        }
     }
 }
 

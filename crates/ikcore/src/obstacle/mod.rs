@@ -13,6 +13,8 @@
 //! | `allowed_contacts` | bodies that may touch an obstacle |
 //! | `clear_groups` | clearance test of one configuration, four bodies at a time |
 //! | `eight_scene`, `travel_bounds` | near pairs at eight configurations |
+//! | `own_points` | advice where the robot is in what was measured |
+//! | `without_robot` | clouds and grids without the robot's own points |
 //! | `which_clear` | clear ones of many configurations |
 //! | `sampled_line` | lines in joint space, sampled, for searches |
 //! | `near_pairs` | the nearest pairs |
@@ -37,12 +39,14 @@ mod motion_certificate;
 mod near_pairs;
 mod near_rows;
 mod obstacles;
+mod own_points;
 mod required_distance;
 mod sampled_line;
 mod scene;
 mod surroundings;
 mod travel_bounds;
 mod which_clear;
+mod without_robot;
 
 pub(crate) use clear_space::Blocked;
 pub use clear_space::ClearSpace;
@@ -55,7 +59,9 @@ pub use joint_motion::{Edge, JointMotion};
 pub(crate) use motion_certificate::MotionCertificate;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::{Obstacle, Obstacles};
+pub use own_points::Measured;
 pub(crate) use required_distance::RequiredDistance;
 pub use sampled_line::SampledLine;
 pub use scene::{Scene, SceneRobot};
 pub use surroundings::Surroundings;
+pub use without_robot::WithoutRobot;

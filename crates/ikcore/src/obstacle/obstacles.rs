@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::bodies::CarriedBody;
 use crate::shape::{BoundingBall, Shape, ShapeIndex};
 
 /// Absolute rounding of the distance of two balls (m).
@@ -36,6 +37,8 @@ struct Prepared {
     index: Option<ShapeIndex>,
     first_flat: Option<usize>,
     first_open_mesh: Option<usize>,
+    /// Bodies that the robot must carry, each with its link and its name.
+    carried: Vec<[String; 2]>,
 }
 
 impl Obstacle {
@@ -49,6 +52,13 @@ impl Obstacle {
     /// Names of the links that may touch it, sorted.
     pub fn touch(&self) -> &[String] {
         self.touch.as_deref().unwrap_or_default()
+    }
+}
+
+impl Obstacle {
+    /// The obstacle with another shape, and the same links that may touch it.
+    pub(super) fn reshaped(&self, shape: Shape) -> Self {
+        Self { shape, touch: self.touch.clone() }
     }
 }
 
@@ -96,6 +106,11 @@ impl Obstacles {
         }
     }
 
+    /// The first body, by link and name, that the robot must carry and that is not among `bodies`.
+    pub(super) fn first_not_carried(&self, bodies: &[CarriedBody]) -> Option<&[String; 2]> {
+        self.0.carried.iter().find(|[_, name]| bodies.iter().all(|body| body.link != *name))
+    }
+
     /// The first that lies in the plane z = 0.
     pub(super) fn first_flat(&self) -> Option<usize> {
         self.0.first_flat
@@ -109,7 +124,13 @@ impl Obstacles {
 
 impl<T: Into<Obstacle>> FromIterator<T> for Obstacles {
     fn from_iter<I: IntoIterator<Item = T>>(obstacles: I) -> Self {
-        let list: Vec<Obstacle> = obstacles.into_iter().map(Into::into).collect();
+        Self::beside_carried(obstacles.into_iter().map(Into::into).collect(), vec![])
+    }
+}
+
+impl Obstacles {
+    /// Obstacles of a scene whose robot carries bodies, each given by its link and its name.
+    pub fn beside_carried(list: Vec<Obstacle>, carried: Vec<[String; 2]>) -> Self {
         let ball = |Obstacle { shape, .. }: &Obstacle| {
             let BoundingBall { center, radius } = shape.bounding_ball();
             let center = Vector3::from(center);
@@ -123,6 +144,7 @@ impl<T: Into<Obstacle>> FromIterator<T> for Obstacles {
             first_flat: first(Shape::is_flat),
             first_open_mesh: first(Shape::is_open_mesh),
             list,
+            carried,
         }))
     }
 }

@@ -76,7 +76,9 @@ impl Deref for SceneRobot<'_> {
 impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::NoCapsules`] if the robot has none, or if some of its collision shapes could not be read;
-    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, or one that may touch a link without a body.
+    /// [`Error::InvalidObstacle`] for a flat obstacle and an arm that leaves its plane, and for one that may touch a link
+    /// without a body, or every link;
+    /// [`Error::Contradiction`] if the robot carries something in the scene ([`Obstacles::beside_carried`]), and this one does not.
     pub fn new(robot: impl Into<SceneRobot<'a>>, obstacles: impl Into<Obstacles>) -> Result<Self> {
         let (robot, obstacles) = (robot.into(), obstacles.into());
         if robot.capsules().is_empty() || !robot.unread_collision_shapes().is_empty() {
@@ -93,6 +95,13 @@ impl<'a> Scene<'a> {
             return Err(Error::InvalidObstacle { problem });
         }
         let bodies = Arc::clone(robot.body_model());
+        if let Some([link, name]) = obstacles.first_not_carried(&bodies.carried) {
+            let problem = message![
+                format!("in the scene, link '{link}' carries '{name}', which robot '{}' does not: use ", robot.name()),
+                Setting::Attach
+            ];
+            return Err(Error::Contradiction { problem });
+        }
         let allowed = AllowedContacts::new(&robot, &bodies.carried, &obstacles)?;
         let others = OtherBodies { obstacles, allowed, itself: true };
         Ok(Self { robot, bodies, others, fixed: OnceLock::new(), clear_at_rest: OnceLock::new() })
@@ -293,7 +302,7 @@ impl<'a> Scene<'a> {
     }
 
     #[inline]
-    fn posed<'b>(&'b self, body: usize, poses: &'b BodyPoses) -> PosedBody<'b> {
+    pub(super) fn posed<'b>(&'b self, body: usize, poses: &'b BodyPoses) -> PosedBody<'b> {
         self.posed_at(body, &poses.segments[body], &poses.frames)
     }
 

@@ -4,18 +4,20 @@ use serde::{Deserialize, Serialize};
 
 use super::obstacles::{Obstacle, Obstacles};
 use crate::error::{Error, Result};
+use crate::robot::Robot;
 
 /// Distance kept where none is given (m).
 const DEFAULT_MARGIN: f64 = 1e-3;
 
-/// Obstacles, and the distance to keep. By default nothing is checked.
+/// Obstacles, and the distance to keep. By default nothing is checked but the links of a robot with several tips against each
+/// other, where all its collision shapes are known.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Surroundings {
     /// The obstacles; an empty list checks the links against each other alone. `None`: no obstacles.
     pub obstacles: Option<Obstacles>,
     /// Distance to keep from obstacles and between links (m). `None` means 1 mm.
     pub margin: Option<f64>,
-    /// Whether links must not touch each other. `None`: where obstacles are given.
+    /// Whether links must not touch each other. `None`: where obstacles are given, and for several tips.
     pub self_collision: Option<bool>,
 }
 
@@ -25,9 +27,12 @@ impl Surroundings {
         Self { obstacles: Some(obstacles.into()), ..Self::default() }
     }
 
-    /// Whether there is anything to keep clear of.
-    pub fn is_given(&self) -> bool {
-        self.obstacles.is_some() || self.self_collision == Some(true)
+    /// Whether there is anything that `robot` keeps clear of. Arms on one torso reach each other in most of their postures, so that
+    /// their links are checked unless the caller declines.
+    pub fn apply_to(&self, robot: &Robot) -> bool {
+        let arms_meet =
+            || robot.tip_count() > 1 && !robot.capsules().is_empty() && robot.unread_collision_shapes().is_empty();
+        self.obstacles.is_some() || self.self_collision.unwrap_or_else(arms_meet)
     }
 
     /// The obstacles, if any.

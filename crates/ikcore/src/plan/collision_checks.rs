@@ -3,10 +3,11 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::endpoint::EndName;
 use super::planar_arm::PlanarArm;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
-use crate::message::Message;
+use crate::message::{Message, message};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Contact, JointMotion, Surroundings, TooNear};
 use crate::robot::Robot;
 use crate::timing::Violation;
@@ -46,10 +47,11 @@ pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) ->
     match scene.nearest(q)? {
         Some(contact) if contact.distance < kept => {
             let (other, depth) = (contact.other.to_string(), contact.depth(kept));
-            let remedy = if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) {
-                format!("; {}", contact.remedy()).into()
-            } else {
-                Message::default()
+            // The robot is at the start, perhaps not at an end.
+            let remedy = match contact.measured().filter(|_| what == EndName::Start.of_target()) {
+                Some(measured) => message!["; ", measured.advice()],
+                None if scene.contact_at_rest(q, kept).as_ref() == Some(&contact) => message!["; ", contact.remedy()],
+                None => Message::default(),
             };
             Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
         }

@@ -8,8 +8,9 @@ use super::collision_checks::least_clearance;
 use super::cost::Cost;
 use super::planar_arm::Orientations;
 use crate::error::{Error, Result};
+use crate::limits::JointOutside;
 use crate::message::{Message, Setting, message};
-use crate::obstacle::{Clearance, ClearanceSweep, Surroundings, clear_in_words};
+use crate::obstacle::{Clearance, ClearanceSweep, Measured, Surroundings, clear_in_words};
 use crate::robot::Robot;
 use crate::solver::Status;
 use crate::stored::from_bytes;
@@ -34,8 +35,14 @@ pub struct Plan {
     pub clearance: Option<Clearance>,
     /// Why no clear motion was found, if that is so.
     pub obstruction: Option<String>,
+    /// What was measured of the robot itself, if that is the obstruction.
+    pub own_points: Option<Measured>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
+    /// Joints that begin outside their limits, and are led inside.
+    pub start_outside: Vec<JointOutside>,
+    /// Joints that end at another whole turn than the end configuration has.
+    pub end_turned: Vec<JointTurned>,
     /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
     /// Surroundings that the whole motion keeps clear of, if any.
@@ -69,6 +76,17 @@ pub struct Freed {
     pub clearance: f64,
     /// The time from which on the margin is kept (s).
     pub until: f64,
+}
+
+/// A joint that ends at another whole turn than the end configuration has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointTurned {
+    /// Name of the joint.
+    pub joint: String,
+    /// Value at the end (rad).
+    pub value: f64,
+    /// Value in the end configuration (rad).
+    pub given: f64,
 }
 
 /// The largest acceleration of a plan that no limit bounds.
@@ -108,7 +126,10 @@ impl Plan {
             history: vec![],
             clearance: None,
             obstruction: None,
+            own_points: None,
             chosen_end: None,
+            start_outside: vec![],
+            end_turned: vec![],
             freed: None,
             surroundings: None,
             accuracy: None,
@@ -167,14 +188,19 @@ impl Plan {
     pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
             let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
-            return message![format!("no clear plan for {obstruction}; "), advice];
+            return match self.own_points {
+                Some(measured) => message![format!("no clear plan for {obstruction}; "), measured.advice()],
+                None => message![format!("no clear plan for {obstruction}; "), advice],
+            };
         }
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
             Status::Solved => format!(
-                "planned with {cost}{}{}{}",
+                "planned with {cost}{}{}{}{}{}",
                 self.clearance_in_words(),
                 self.freed_in_words(),
+                JointOutside::in_words(&self.start_outside, "begins"),
+                self.turned_in_words(),
                 self.peak_in_words()
             )
             .into(),
@@ -199,6 +225,14 @@ impl Plan {
             let (clearance, until) = (number(clearance), number(until));
             format!("; it begins with a clearance of {clearance} m and keeps the margin after {until} s")
         })
+    }
+
+    fn turned_in_words(&self) -> String {
+        let joint = |JointTurned { joint, value, given }: &JointTurned| {
+            let turns = format!("at {} in place of {}, whole turns apart", number(*value), number(*given));
+            format!("; joint '{joint}' goes the short way and ends {turns}")
+        };
+        self.end_turned.iter().map(joint).collect()
     }
 
     fn peak_in_words(&self) -> String {

@@ -6,12 +6,13 @@ use super::cost::Cost;
 use super::straight_line::StraightLine;
 use super::tpbso_options::Tpbso;
 use crate::error::{Error, Result};
-use crate::limits::Limits;
+use crate::limits::{AdmittedStart, Limits, StartSlack};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, DerivativeFree, Stop};
 use crate::task::Task;
 use crate::timing::ConstantLimits;
+use crate::wording::words;
 
 /// Methods of point-to-point planning.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -71,9 +72,25 @@ impl FromStr for AlongPathMethod {
     }
 }
 
+/// Whole turns at which joints that turn without limits come to an end configuration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum EndTurns {
+    /// Those nearest to the start: the short way round. Among obstacles, the other way if the short one is blocked.
+    #[default]
+    Nearest,
+    /// Those of the given configuration.
+    AsGiven,
+}
+
+words!("end_turns": EndTurns { Nearest => "nearest", AsGiven => "as_given" });
+
 /// Options of [`plan_point_to_point`](crate::planning::plan_point_to_point).
 #[derive(Debug, Clone, Default)]
 pub struct PointToPointOptions {
+    /// Distance beyond a position limit in which a start configuration is taken and led inside.
+    pub start_slack: StartSlack,
+    /// Whole turns of an end configuration.
+    pub end_turns: EndTurns,
     /// Velocity at the start (n,) (rad/s, m/s), which must then be a configuration. `None` begins at rest.
     pub start_velocity: Option<Vec<f64>>,
     /// A straight line of the tip before the end.
@@ -112,6 +129,8 @@ pub struct AlongPathOptions {
     pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.
     pub start: Option<Vec<f64>>,
+    /// Distance beyond a position limit in which the start is taken and led inside.
+    pub start_slack: StartSlack,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad). `None` means the method's
@@ -133,14 +152,13 @@ impl PointToPointOptions {
 }
 
 impl AlongPathOptions {
-    /// Returns the given start, checked against the limits; `None` if the planner chooses it.
+    /// Returns the given start, as taken by the gate; `None` if the planner chooses it.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutsideLimits`].
-    pub(crate) fn start_within(&self, robot: &Robot, limits: &ConstantLimits) -> Result<Option<&[f64]>> {
+    pub(crate) fn admitted_start(&self, robot: &Robot, limits: &ConstantLimits) -> Result<Option<AdmittedStart>> {
         let Some(q) = &self.start else { return Ok(None) };
         robot.check("start_q", q)?;
-        robot.require_within("start_q", q, &limits.lower, &limits.upper)?;
-        Ok(Some(q))
+        limits.position_limits(robot)?.admit_start(Some(robot), "start_q", q, &self.start_slack).map(Some)
     }
 }

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::along_path::timed::PathProblem;
 use crate::along_path::{TipPath, clear_path, missed_points, timed};
 use crate::error::{Error, Result};
+use crate::limits::AdmittedStart;
 use crate::message::{Setting, message};
 use crate::plan::{AlongPathMethod, AlongPathOptions, Cost, Plan};
 use crate::robot::Robot;
@@ -32,10 +33,51 @@ pub fn plan_along_path(
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
+    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_along_path")?;
+    let mut plan = match options.admitted_start(robot, &limits)? {
+        None => plan_admitted(robot, &tip_path, options, monitor),
+        Some(start) => plan_from(robot, &tip_path, (start, &limits), options, monitor),
+    }?;
+    plan.name_peak(&limits);
+    Ok(plan)
+}
+
+/// Plans from a start that the gate has taken. Where no motion leads its joints inside at once, they may stay outside, but go no farther
+/// out, and must be inside at the end.
+fn plan_from(
+    robot: &Robot,
+    tip_path: &TipPath,
+    (start, limits): (AdmittedStart, &ConstantLimits),
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let AdmittedStart { q, outside } = start;
+    let options = AlongPathOptions { start: Some(q.clone()), ..options.clone() };
+    let mut planned = plan_admitted(robot, tip_path, &options, monitor);
+    let begins_there = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.trajectory.start() == q);
+    let succeeded = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.violations.is_empty());
+    if !outside.is_empty() && !(begins_there(&planned) && succeeded(&planned)) {
+        let widened = limits.widened_to(robot, options.limits.as_ref(), &q)?;
+        let again = plan_admitted(robot, tip_path, &AlongPathOptions { limits: Some(widened), ..options }, monitor);
+        let ends_inside = again.as_ref().is_ok_and(|plan| limits.contain(&plan.trajectory.end()));
+        if !begins_there(&planned) || (succeeded(&again) && ends_inside) {
+            planned = again;
+        }
+    }
+    planned.map(|plan| Plan { start_outside: outside, ..plan })
+}
+
+/// [`plan_along_path`] with checked options.
+fn plan_admitted(
+    robot: &Robot,
+    tip_path: &TipPath,
+    options: &AlongPathOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
     let space = options.surroundings.clear_space(robot)?;
-    let mut plan = match (&options.method, &space) {
+    match (&options.method, &space) {
         (AlongPathMethod::Timed, space) => {
-            let problem = PathProblem::new(robot, &tip_path, options)?;
+            let problem = PathProblem::new(robot, tip_path, options)?;
             match space {
                 None => free_motion(&problem, monitor),
                 Some(space) => clear_path::along_path(&problem, Some(space), monitor),
@@ -53,10 +95,8 @@ pub fn plan_along_path(
                 " its own",
             ],
         }),
-        (AlongPathMethod::Tpbso(tpbso), _) => tpbso::along_path(robot, &tip_path, tpbso, options, monitor),
-    }?;
-    plan.name_peak(&ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_along_path")?);
-    Ok(plan)
+        (AlongPathMethod::Tpbso(tpbso), _) => tpbso::along_path(robot, tip_path, tpbso, options, monitor),
+    }
 }
 
 /// Plans without regard to obstacles: around a motion that follows the path from a few starts or, where that leads to no plan without

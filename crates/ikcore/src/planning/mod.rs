@@ -16,18 +16,23 @@
 //! | file | what |
 //! |---|---|
 //! | `point_to_point`, `along_path` | the two calls |
+//! | `admitted_ends` | start and ends of a motion as the caller reads them |
 //! | `several_tips` | point to point for several tips: targets become configurations |
 
+mod admitted_ends;
 mod along_path;
 mod point_to_point;
 mod several_tips;
 
 pub use crate::along_path::TipPath;
 pub use crate::plan::{
-    AlongPathMethod, AlongPathOptions, Cost, Elbow, Endpoint, Freed, Improvement, LineContact, LineFrame, Orientation,
-    Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod, PointToPointOptions, StraightLine, Tpbso,
+    AlongPathMethod, AlongPathOptions, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact,
+    LineFrame, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod, PointToPointOptions,
+    StraightLine, Tpbso,
 };
-pub use crate::timing::{ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal};
+pub use crate::timing::{
+    ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,
+};
 pub use along_path::plan_along_path;
 pub(crate) use point_to_point::check_point_to_point;
 pub use point_to_point::plan_point_to_point;

@@ -1,5 +1,6 @@
 //! Planning from point to point.
 
+use super::admitted_ends::AdmittedEnds;
 use super::several_tips::tip_ends;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
@@ -30,7 +31,20 @@ pub fn plan_point_to_point(
     check_point_to_point(robot, start, ends, options)?;
     require_joint_space(robot, options)?;
     let space = motion_space(&options.surroundings, robot)?;
-    let space = space.as_ref();
+    let admitted = AdmittedEnds::read(robot, start, ends, options)?;
+    let mut plan = plan_admitted(robot, &admitted, space.as_ref(), options, monitor)?;
+    admitted.note(robot, ends, &mut plan);
+    Ok(plan)
+}
+
+/// [`plan_point_to_point`] between ends that the gate has taken.
+fn plan_admitted(
+    robot: &Robot,
+    AdmittedEnds { start, ends, .. }: &AdmittedEnds,
+    space: Option<&ClearSpace<'_>>,
+    options: &PointToPointOptions,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
     let names_tips = |end: &Endpoint| matches!(end, Endpoint::Targets { tips, .. } if !tips.is_empty());
     if !std::iter::once(start).chain(ends).any(names_tips) {
         return plan_joined(robot, start, ends, space, options, monitor);

@@ -96,10 +96,8 @@ impl<'a> EndSearch<'a> {
             Endpoint::Configuration(q) => return Ok(vec![q.clone()]),
             Endpoint::Targets { tips, targets } => (tips, targets),
         };
-        let inside =
-            self.options.limits.as_ref().is_none_or(|limits| limits.require_inside("start", 0.0, start).is_ok());
-        let start = inside.then(|| start.to_vec());
-        let first = self.solve(SolveOptions { start, ..self.options_of(tips) }, targets, monitor)?;
+        let first =
+            self.solve(SolveOptions { start: Some(start.to_vec()), ..self.options_of(tips) }, targets, monitor)?;
         reached(name, &first)?;
         let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
         let others = solve_all_tips(self.robot, targets, &all, monitor)?;

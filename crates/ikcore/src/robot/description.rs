@@ -149,6 +149,16 @@ impl Element {
         }
     }
 
+    /// Whether a joint moves it.
+    pub(crate) fn moves(&self) -> bool {
+        self.stages() > 0
+    }
+
+    /// The first joint that drives it.
+    pub(crate) fn first_driver(&self) -> Option<usize> {
+        self.drivers().next()
+    }
+
     /// Largest displacement of the chain along an axis (m): finite where the square of the length is not.
     fn length(&self) -> f64 {
         if let Self::Fixed(transform) = self { transform.translation.vector.amax() } else { 0.0 }

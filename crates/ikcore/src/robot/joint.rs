@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
-use crate::wording::words;
+use crate::message::{Message, Setting, message};
+use crate::wording::{number, words};
 
 /// Kind of motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +44,45 @@ pub struct Joint {
     pub rated_acceleration: f64,
     /// The maker's jerk limit (rad/s^3 or m/s^3), likewise.
     pub rated_jerk: f64,
+}
+
+/// Rounding beyond a limit, relative to the range of the joint: single precision, and six digits of a file.
+const ROUNDING_OF_RANGE: f64 = 1e-6;
+/// Smallest rounding (rad, m).
+const LEAST_ROUNDING: f64 = 1e-9;
+
+/// Excess over the limits of a joint that counts as rounding (rad, m).
+pub(crate) fn limit_rounding(lower: f64, upper: f64) -> f64 {
+    let range = if (upper - lower).is_finite() { upper - lower } else { 1.0 };
+    (ROUNDING_OF_RANGE * range).max(LEAST_ROUNDING)
+}
+
+/// Distance beyond a limit (rad, m) from which on no one moves a joint to the limit without a thought.
+const NEAR: [f64; 2] = [50.0 * std::f64::consts::PI / 180.0, 0.05];
+
+/// Advice for a joint of this kind `beyond` its limit (rad, m).
+pub(crate) fn way_inside(kind: Option<JointKind>, beyond: f64) -> Message {
+    let [turning, sliding] = NEAR;
+    let near = if kind.is_none_or(JointKind::turns) { turning } else { sliding };
+    if beyond <= near { Setting::Clip.into() } else { "move it inside".into() }
+}
+
+/// The error for a joint of this kind (known where a robot is) outside its limits; `what` names the configuration.
+pub(crate) fn outside_limits(
+    what: impl Into<Message>,
+    (joint, kind): (&str, Option<JointKind>),
+    value: f64,
+    [lower, upper]: [f64; 2],
+    remedy: impl Into<Message>,
+) -> Error {
+    let beyond = number((lower - value).max(value - upper));
+    let excess = message![format!("by {beyond} {}: ", position_unit(kind)), remedy];
+    Error::OutsideLimits { what: what.into(), joint: joint.into(), value, lower, upper, excess }
+}
+
+/// Unit of the position of a joint; angles where the kind is not known.
+pub(crate) fn position_unit(kind: Option<JointKind>) -> &'static str {
+    if kind.is_none_or(JointKind::turns) { "rad" } else { "m" }
 }
 
 /// Half-width of the sampling range of an unlimited prismatic joint (m).

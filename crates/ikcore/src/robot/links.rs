@@ -1,5 +1,6 @@
 //! Kinematics of any link: those of the chain, and those that branch off it.
 
+use super::joint::outside_limits;
 use super::model::Robot;
 use std::collections::HashMap;
 
@@ -36,8 +37,8 @@ impl Robot {
             let joint = joint.ok_or_else(|| self.not_held(name))?;
             let (lower, upper) = (joint.joint.lower, joint.joint.upper);
             if value.is_finite() && !(lower..=upper).contains(&value) {
-                let (what, joint) = ("hold".into(), name.into());
-                return Err(Error::OutsideLimits { what, joint, value, lower, upper });
+                let named = (name, Some(joint.joint.kind));
+                return Err(outside_limits("hold", named, value, [lower, upper], "move it inside"));
             }
             joint.value = value;
         }

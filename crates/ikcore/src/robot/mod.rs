@@ -15,10 +15,13 @@
 //! | `pair_rule`, `pairs`, `pair_sampling` | links that are tested against each other |
 //! | `upright_axis` | a vertical first axis |
 //! | `mobile_base` | a robot on a base that moves |
+//! | `measured_geometry` | a robot with other transforms and offsets, as a calibration finds them |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
 //! | `serialization` | robots as bytes |
+//! | `named_values` | joint values by name |
+//! | `wrapped` | the same posture at other whole turns |
 
 mod arms;
 mod attached;
@@ -32,8 +35,10 @@ mod kinematics;
 mod link_capsule;
 mod links;
 mod manufacturing_errors;
+mod measured_geometry;
 mod mobile_base;
 mod model;
+mod named_values;
 mod off_chain;
 mod pair_rule;
 mod pair_sampling;
@@ -45,6 +50,7 @@ mod tip_chain;
 mod tips;
 mod upright_axis;
 mod visual;
+mod wrapped;
 
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
@@ -53,6 +59,7 @@ pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
+pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;

@@ -202,23 +202,6 @@ impl Robot {
         }
     }
 
-    /// Checks that `q` (n,) lies in the box from `lower` to `upper` (n,); `what` names it in the message.
-    ///
-    /// # Errors
-    /// [`Error::OutsideLimits`] names the joint, its value and its limits.
-    pub(crate) fn require_within(&self, what: &str, q: &[f64], lower: &[f64], upper: &[f64]) -> Result<()> {
-        match (0..q.len()).find(|j| !(lower[*j] <= q[*j] && q[*j] <= upper[*j])) {
-            None => Ok(()),
-            Some(j) => Err(Error::OutsideLimits {
-                what: what.into(),
-                joint: self.joints()[j].name.clone(),
-                value: q[j],
-                lower: lower[j],
-                upper: upper[j],
-            }),
-        }
-    }
-
     /// `count` configurations drawn uniformly between the limits, stored consecutively (count * n entries).
     ///
     /// # Errors

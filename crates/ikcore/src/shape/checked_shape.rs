@@ -162,28 +162,29 @@ impl Shape {
         Ok(Self::made(Geometry::Mesh(Arc::new(mesh)), bounds))
     }
 
-    /// Creates a point cloud: balls of one `radius` about `points` (m), for example from a depth camera.
+    /// Creates a point cloud: balls of one `radius` about `points` (m), for example from a depth camera. One without points
+    /// touches nothing.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius, [`Error::InvalidObstacle`] for no points.
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for a negative radius.
     pub fn point_cloud(points: Vec<[f64; 3]>, radius: f64) -> Result<Self> {
         require_points("points of the point cloud", &points)?;
         if !(radius >= 0.0 && radius.is_finite()) {
             return Err(Error::out_of_range("radius of the point cloud", "zero or more and finite", radius));
         }
-        if points.is_empty() {
-            return Err(Error::InvalidObstacle { problem: "a point cloud needs at least one point, got none".into() });
-        }
-        let bounds = ball_about(&points, radius);
-        Ok(Self::made(Geometry::PointCloud(Arc::new(PointCloud::new(points, radius))), bounds))
+        Ok(Self::of_cloud(PointCloud::new(points, radius)))
+    }
+
+    fn of_cloud(cloud: PointCloud) -> Self {
+        let bounds = ball_about(cloud.points(), cloud.radius());
+        Self::made(Geometry::PointCloud(Arc::new(cloud)), bounds)
     }
 
     /// Creates a voxel grid: cubes with edges of `voxel` (m), the first with its lowest corner at `origin`. `occupied` has
-    /// `counts[0] * counts[1] * counts[2]` entries, with z running fastest.
+    /// `counts[0] * counts[1] * counts[2]` entries, with z running fastest. One without occupied voxels touches nothing.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::WrongLength`],
-    /// [`Error::InvalidObstacle`] if nothing is occupied.
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for an edge that is not positive, [`Error::WrongLength`].
     pub fn grid(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Result<Self> {
         require_point("origin", &origin)?;
         require_positive("voxel of the grid", voxel)?;
@@ -194,16 +195,35 @@ impl Shape {
         }
         let far: [f64; 3] = std::array::from_fn(|k| origin[k] + voxel * counts[k] as f64);
         require_point("far corner of the grid", &far)?;
-        let grid = Grid::new(origin, voxel, counts, occupied);
-        let Some(grid) = grid else {
-            return Err(Error::InvalidObstacle {
-                problem: "a grid needs at least one occupied voxel, got none".into(),
-            });
-        };
+        Ok(Self::of_grid(Grid::new(origin, voxel, counts, occupied)))
+    }
+
+    fn of_grid(grid: Grid) -> Self {
         let corners: Vec<[f64; 3]> =
             grid.blocks().iter().flat_map(|block| [block.lower.into(), block.upper.into()]).collect();
         let bounds = ball_about(&corners, 0.0);
-        Ok(Self::made(Geometry::Grid(Arc::new(grid)), bounds))
+        Self::made(Geometry::Grid(Arc::new(grid)), bounds)
+    }
+
+    /// Returns a cloud without the points, or a grid without the voxels, that are `gone`; other shapes as they are.
+    pub(crate) fn without_pieces(&self, gone: &[bool]) -> Self {
+        match &self.geometry {
+            Geometry::PointCloud(cloud) => Self::of_cloud(cloud.without(gone)),
+            Geometry::Grid(grid) => {
+                let occupied = grid.occupied().iter().zip(gone).map(|(occupied, gone)| *occupied && !gone).collect();
+                Self::of_grid(Grid::new(grid.origin(), grid.voxel(), grid.counts(), occupied))
+            }
+            _ => self.clone(),
+        }
+    }
+
+    /// Whether nothing belongs to the shape: a cloud without points, or a grid without occupied voxels.
+    pub fn is_empty(&self) -> bool {
+        match &self.geometry {
+            Geometry::PointCloud(cloud) => cloud.points().is_empty(),
+            Geometry::Grid(grid) => grid.blocks().is_empty(),
+            _ => false,
+        }
     }
 
     /// Returns the geometry.
@@ -252,8 +272,12 @@ impl Shape {
     }
 }
 
-/// Returns a ball about the middle of the bounding box of `points` that contains the box, enlarged by `margin` (m).
+/// Returns a ball about the middle of the bounding box of `points` that contains the box, enlarged by `margin` (m); about
+/// the origin without points.
 fn ball_about(points: &[[f64; 3]], margin: f64) -> BoundingBall {
+    if points.is_empty() {
+        return BoundingBall { center: [0.0; 3], radius: margin };
+    }
     let (mut lower, mut upper) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
     for point in points {
         lower = lower.inf(&Vector3::from(*point));

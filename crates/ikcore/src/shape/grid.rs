@@ -51,19 +51,16 @@ impl fmt::Debug for Grid {
 }
 
 impl Grid {
-    /// Builds the grid; `None` if nothing is occupied. `occupied` has an entry per voxel, with z running fastest.
-    pub(super) fn new(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Option<Self> {
+    /// Builds the grid. `occupied` has an entry per voxel, with z running fastest.
+    pub(super) fn new(origin: [f64; 3], voxel: f64, counts: [usize; 3], occupied: Vec<bool>) -> Self {
         let at = |k: usize, i: usize| origin[k] + voxel * i as f64;
         let place = |range: &[[usize; 2]; 3]| Aabb {
             lower: Vector3::from_fn(|k, _| at(k, range[k][0])),
             upper: Vector3::from_fn(|k, _| at(k, range[k][1])),
         };
         let blocks: Vec<Aabb> = joined(counts, &occupied).iter().map(place).collect();
-        if blocks.is_empty() {
-            return None;
-        }
         let tree = BoundingTree::new(&blocks, |lanes| FourBlocks::new(lanes.map(|block| &blocks[block])));
-        Some(Self { origin, voxel, counts, occupied, blocks, tree })
+        Self { origin, voxel, counts, occupied, blocks, tree }
     }
 
     /// Returns the lowest corner of the first voxel (m).
@@ -97,6 +94,34 @@ impl Grid {
         self.tree.each_near(segment, reach, visit);
     }
 
+    /// Visits the centres of all occupied voxels that meet the box around a segment, enlarged by `reach` (m), with their
+    /// indices.
+    pub(super) fn each_voxel_near(
+        &self,
+        [a, b]: &[Vector3<f64>; 2],
+        reach: f64,
+        visit: &mut dyn FnMut(usize, [f64; 3]),
+    ) {
+        let [ny, nz] = [self.counts[1], self.counts[2]];
+        // One voxel more on each side, because of rounding. Casts saturate.
+        let range = |k: usize| {
+            let index = |x: f64| ((x - self.origin[k]) / self.voxel).floor();
+            let low = (index(a[k].min(b[k]) - reach) - 1.0).max(0.0) as usize;
+            low..((index(a[k].max(b[k]) + reach) + 2.0).max(0.0) as usize).min(self.counts[k])
+        };
+        for x in range(0) {
+            for y in range(1) {
+                for z in range(2) {
+                    let index = (x * ny + y) * nz + z;
+                    if self.occupied[index] {
+                        let at = [x, y, z];
+                        visit(index, std::array::from_fn(|k| self.origin[k] + self.voxel * (at[k] as f64 + 0.5)));
+                    }
+                }
+            }
+        }
+    }
+
     /// Returns the signed distance of a point to the nearest block, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let mut deepest: Option<Tangent> = None;
@@ -106,7 +131,9 @@ impl Grid {
                 deepest = Some(tangent);
             }
         });
-        deepest.unwrap_or_else(|| self.blocks[nearest.index.unwrap_or(0)].tangent(point))
+        let of_nearest = |block: usize| self.blocks[block].tangent(point);
+        let nothing = Tangent { value: f64::INFINITY, normal: Vector3::x() };
+        deepest.or(nearest.index.map(of_nearest)).unwrap_or(nothing)
     }
 
     /// Returns the signed distance of a segment, exact up to `enough`: inside it is minus the depth of the deepest point in a
@@ -225,7 +252,6 @@ mod tests {
             Shape::grid([0.0; 3], voxel, [2, 1, 1], vec![false; count]).unwrap_err().to_string()
         };
         assert_eq!(problem(0.1, 3), "occupied voxels: expected 2 x 1 x 1 voxels, got 3");
-        assert_eq!(problem(0.1, 2), "a grid needs at least one occupied voxel, got none");
         assert_eq!(problem(0.0, 2), "voxel of the grid must be positive and finite, got 0");
     }
 }

@@ -26,6 +26,7 @@
 //! | `cover` | covers of meshes by few spheres and capsules |
 //! | `enclosing_capsule` | capsules that contain other shapes |
 //! | `convex`, `convex_distance` | signed distance of any two convex sets |
+//! | `near_pieces` | points of a cloud and voxels of a grid near a body |
 //! | `posed_body` | body of a robot with its frame, and its distances |
 //! | `extent` | extents of bodies and shapes along a direction |
 //! | `separation` | nearest point of a capsule to a shape, and the normal there |
@@ -51,6 +52,7 @@ mod grid;
 mod mesh;
 mod mesh_hull;
 mod mesh_pieces;
+mod near_pieces;
 mod nearest_piece;
 mod point_cloud;
 mod posed_body;

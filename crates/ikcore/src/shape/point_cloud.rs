@@ -5,13 +5,13 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::along_segment::SegmentDistance;
-use super::bounding_tree::{Aabb, BoundingTree};
+use super::bounding_tree::{Aabb, BoundingTree, NONE, SegmentQuery};
 use super::nearest_piece::{PieceLanes, squared_bound};
 use super::segment_lanes::{NearestFraction, to_point};
 use super::tangent::Tangent;
-use crate::math::arithmetic::Arithmetic;
+use crate::math::arithmetic::{Arithmetic, by_instructions};
 use crate::math::f64x4::F64x4;
-use crate::math::real::Four;
+use crate::math::real::{Four, Real};
 use crate::math::vec3::Vec3;
 
 /// Balls of one radius about many points.
@@ -41,12 +41,26 @@ impl fmt::Debug for PointCloud {
 }
 
 impl PointCloud {
-    /// Builds the cloud of balls about `points`, at least one.
+    /// Builds the cloud of balls about `points`.
     pub(super) fn new(points: Vec<[f64; 3]>, radius: f64) -> Self {
-        let boxes: Vec<Aabb> = points.iter().map(|point| Aabb::around([Vector3::from(*point)])).collect();
-        let lanes = |lanes: [usize; 4]| FourPoints(std::array::from_fn(|k| F64x4(lanes.map(|i| points[i][k]))));
-        let tree = BoundingTree::new(&boxes, lanes);
+        let boxes: Vec<Aabb> = points.iter().map(box_of).collect();
+        let tree = BoundingTree::new(&boxes, |lanes| FourPoints::new(&points, lanes));
         Self { points, radius, tree }
+    }
+
+    /// Returns the cloud without the points that are `gone`.
+    pub(super) fn without(&self, gone: &[bool]) -> Self {
+        let mut points = Vec::with_capacity(self.points.len());
+        let number = |(point, gone): (&[f64; 3], &bool)| {
+            if *gone {
+                return NONE;
+            }
+            points.push(*point);
+            points.len() as u32 - 1
+        };
+        let numbers: Vec<u32> = self.points.iter().zip(gone).map(number).collect();
+        let tree = self.tree.of_some(&numbers, |i| box_of(&points[i]), |lanes| FourPoints::new(&points, lanes));
+        Self { points, radius: self.radius, tree }
     }
 
     /// Returns the points (m).
@@ -65,10 +79,17 @@ impl PointCloud {
         self.tree.each_near(segment, reach, visit);
     }
 
+    /// Visits all points whose distance from a segment is at most `reach` (m), with the distance squared (m^2), and possibly
+    /// others.
+    pub(super) fn each_within(&self, segment: &[Vector3<f64>; 2], reach: f64, visit: &mut dyn FnMut(usize, f64)) {
+        each_within(&self.tree, segment, reach, visit);
+    }
+
     /// Returns the signed distance of a point to the nearest ball, and its gradient.
     pub(super) fn tangent(&self, point: &Vector3<f64>) -> Tangent {
         let nearest = self.tree.nearest(&[*point; 2], f64::INFINITY, &mut |_| {});
-        let away = point - Vector3::from(self.points[nearest.index.unwrap_or(0)]);
+        let Some(index) = nearest.index else { return Tangent { value: f64::INFINITY, normal: Vector3::x() } };
+        let away = point - Vector3::from(self.points[index]);
         Tangent { value: away.norm() - self.radius, normal: away.try_normalize(0.0).unwrap_or(Vector3::x()) }
     }
 
@@ -77,6 +98,37 @@ impl PointCloud {
     pub(super) fn approach(&self, segment: &[Vector3<f64>; 2], enough: f64) -> SegmentDistance {
         let nearest = self.tree.nearest(segment, squared_bound(enough + self.radius), &mut |_| {});
         SegmentDistance { distance: nearest.squared.sqrt() - self.radius, fraction: nearest.fraction }
+    }
+}
+
+fn box_of(point: &[f64; 3]) -> Aabb {
+    Aabb::around([Vector3::from(*point)])
+}
+
+impl FourPoints {
+    fn new(points: &[[f64; 3]], lanes: [usize; 4]) -> Self {
+        Self(std::array::from_fn(|k| F64x4(lanes.map(|i| points[i][k]))))
+    }
+}
+
+by_instructions! {
+    fn each_within(
+        tree: &BoundingTree<FourPoints>,
+        segment: &[Vector3<f64>; 2],
+        reach: f64,
+        visit: &mut dyn FnMut(usize, f64),
+    ) {
+        let [start, along] = [segment[0].into(), (segment[1] - segment[0]).into()];
+        tree.search::<A>(&SegmentQuery::new(segment), squared_bound(reach), |leaf, bound| {
+            let squared = leaf.lanes.nearest::<A>(&start, &along).squared.stored().0;
+            for lane in 0..4 {
+                // What is not a number is near.
+                if let Some(index) = leaf.piece(lane) && !(squared[lane] > bound) {
+                    visit(index, squared[lane]);
+                }
+            }
+            bound
+        });
     }
 }
 
@@ -119,7 +171,6 @@ mod tests {
     #[test]
     fn mistakes_in_a_cloud_are_named() {
         let problem = |points: Vec<[f64; 3]>, radius| Shape::point_cloud(points, radius).unwrap_err().to_string();
-        assert_eq!(problem(vec![], 0.1), "a point cloud needs at least one point, got none");
         assert_eq!(
             problem(vec![[0.0; 3]], -0.1),
             "radius of the point cloud must be zero or more and finite, got -0.1"

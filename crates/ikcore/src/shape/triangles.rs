@@ -54,7 +54,7 @@ impl Shape {
                 (0..mesh.faces().len()).map(corners).collect()
             }
             Geometry::PointCloud(cloud) => {
-                let step = cloud.points().len().div_ceil(MOST_POINTS);
+                let step = cloud.points().len().div_ceil(MOST_POINTS).max(1);
                 cloud.points().iter().step_by(step).flat_map(|p| octahedron(p, cloud.radius())).collect()
             }
             Geometry::Grid(grid) => grid.blocks().iter().flat_map(of_block).collect(),

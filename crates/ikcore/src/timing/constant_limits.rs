@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile, ROUNDING};
+use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{JointKind, Robot, limit_rounding};
 use crate::trajectory::Trajectory;
+use crate::wording::named_joints;
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +53,9 @@ impl ConstantLimits {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), Some(joint.kind))).collect();
-        let limits = Self::read(&limits, joints, method.into(), "give numbers")?;
-        limits.require_motion()?;
-        Ok(limits)
+        let constant = Self::read(&limits, joints, method.into(), "give numbers")?;
+        limits.require_unlocked()?;
+        Ok(constant)
     }
 
     fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: Message, remedy: &str) -> Result<Self> {
@@ -94,7 +95,7 @@ impl ConstantLimits {
     }
 
     /// Checks that these limits fit the joints of `path`, that the path is within the position limits, and that no
-    /// joint that must move is locked.
+    /// joint that must move is locked. A path that begins outside within the slack of a start may return from there.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::Infeasible`] names the joint.
@@ -104,23 +105,28 @@ impl ConstantLimits {
             let expected = format!("{} joints, as the path has", joints.len());
             return Err(Error::WrongLength { what: "limits".into(), expected, got: self.dof() });
         }
+        let slack = StartSlack::default();
+        let mut start = vec![0.0; joints.len()];
+        path.position(0.0, &mut start);
         for (j, joint) in joints.iter().enumerate() {
             let [lowest, highest] = path.range(j);
-            for (place, excess, bound, limit) in [
-                (lowest, self.lower[j] - lowest, self.lower[j], "lower"),
-                (highest, highest - self.upper[j], self.upper[j], "upper"),
-            ] {
-                if excess > ROUNDING * bound.abs().max(1.0) {
+            let (lower, upper) = slack.reach(j, self.joints[j].1, start[j], [self.lower[j], self.upper[j]]);
+            for (place, excess, bound, limit) in
+                [(lowest, lower - lowest, self.lower[j], "lower"), (highest, highest - upper, self.upper[j], "upper")]
+            {
+                if excess > limit_rounding(self.lower[j], self.upper[j]) {
                     let problem =
                         format!("the path takes joint '{joint}' to {place}, beyond its {limit} limit {bound}");
                     return Err(Error::Infeasible { problem: problem.into() });
                 }
             }
-            if let Some((field, _)) = self.rates().into_iter().find(|(_, limits)| limits[j] == 0.0)
-                && highest > lowest
-            {
-                let moves = format!("the path moves joint '{joint}' from {lowest} to {highest}");
-                return Err(Error::Infeasible { problem: format!("{moves}, but its {field} limit is 0").into() });
+        }
+        for (field, limits) in self.rates() {
+            let is_stuck = |j: &usize| limits[*j] == 0.0 && path.range(*j)[1] > path.range(*j)[0];
+            let stuck: Vec<&str> = (0..joints.len()).filter(is_stuck).map(|j| joints[j].as_str()).collect();
+            if !stuck.is_empty() {
+                let moves = format!("the path moves {}, where the {field} limit is 0: give ", named_joints(&stuck));
+                return Err(Error::Infeasible { problem: message![moves, Setting::Limit(field)] });
             }
         }
         Ok(())
@@ -189,8 +195,13 @@ impl ConstantLimits {
     /// Range of positions that a search may use for a joint (rad, m): its limits, or half a turn to either side without
     /// them.
     pub(crate) fn finite_range(&self, joint: usize) -> (f64, f64) {
-        let (lower, upper) = sampling_range::opened(self.lower[joint], self.upper[joint]);
+        let (lower, upper) = self.open_range(joint);
         sampling_range::finite(lower, upper, PI)
+    }
+
+    /// Position limits of a joint (rad, m), infinite where they count as none.
+    pub(crate) fn open_range(&self, joint: usize) -> (f64, f64) {
+        sampling_range::opened(self.lower[joint], self.upper[joint])
     }
 
     /// Time (s) of the slowest joint through its range, at full speed or from rest to rest at full acceleration or jerk.
@@ -221,6 +232,40 @@ impl ConstantLimits {
         Limits::of(robot).replace(Field::Lower, constant(&self.lower))?.replace(Field::Upper, constant(&self.upper))
     }
 
+    /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.
+    ///
+    /// # Errors
+    /// [`Error::NoPace`].
+    pub(crate) fn require_pace(&self) -> Result<()> {
+        let free = |j: &usize| self.rates().iter().all(|(_, limits)| limits[*j].is_infinite());
+        let joints: Vec<&str> = (0..self.dof()).filter(free).map(|j| self.joint_name(j)).collect();
+        if joints.is_empty() { Ok(()) } else { Err(Error::no_pace(&joints, "")) }
+    }
+
+    /// The limits of `robot`, or those `given`, with position limits widened to the start `q` (n,).
+    ///
+    /// # Errors
+    /// None in practice: the limits were checked.
+    pub(crate) fn widened_to(&self, robot: &Robot, given: Option<&Limits>, q: &[f64]) -> Result<Limits> {
+        let widened = |values: &[f64], wider: fn(f64, f64) -> f64| {
+            values.iter().zip(q).map(|(limit, q)| Profile::Constant(wider(*limit, *q))).collect()
+        };
+        let limits = given.cloned().unwrap_or_else(|| Limits::of(robot));
+        limits
+            .replace(Field::Lower, widened(&self.lower, f64::min))?
+            .replace(Field::Upper, widened(&self.upper, f64::max))
+    }
+
+    /// Whether `q` (n,) is inside the position limits, but for rounding.
+    pub(crate) fn contain(&self, q: &[f64]) -> bool {
+        let is_inside = |(j, value): (usize, &f64)| {
+            let (lower, upper) = (self.lower[j], self.upper[j]);
+            let rounding = limit_rounding(lower, upper);
+            lower - rounding <= *value && *value <= upper + rounding
+        };
+        q.iter().enumerate().all(is_inside)
+    }
+
     /// Checks that every joint has a velocity limit, which `method` needs.
     ///
     /// # Errors
@@ -236,18 +281,22 @@ impl ConstantLimits {
         }
     }
 
-    /// Returns the limits that `trajectory` violates, by the exact extremes of its polynomials.
+    /// Returns the limits that `trajectory` violates, by the exact extremes of its polynomials. A joint that begins outside its
+    /// position limits may return from there.
     pub(crate) fn violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let [velocity, acceleration, jerk] =
             [trajectory.max_velocity(), trajectory.max_acceleration(), trajectory.max_jerk()];
         // Rounding of the times of the trajectory: a velocity may be off by its change in that time, and so on.
         let resolution = 4.0 * f64::EPSILON * trajectory.duration();
         let mut found = vec![];
+        let start = trajectory.start();
         for (j, (lowest, highest)) in trajectory.position_range().into_iter().enumerate() {
             let units = self.units(j);
+            // A start outside the limits was taken by the gate; the motion may not go farther out.
+            let (lower, upper) = (self.lower[j].min(start[j]), self.upper[j].max(start[j]));
             let checks = [
-                ("lowest position", lowest, self.lower[j], self.lower[j] - lowest, units[0]),
-                ("highest position", highest, self.upper[j], highest - self.upper[j], units[0]),
+                ("lowest position", lowest, lower, lower - lowest, units[0]),
+                ("highest position", highest, upper, highest - upper, units[0]),
                 ("velocity", velocity[j], self.velocity[j], velocity[j] - self.velocity[j], units[1]),
                 (
                     "acceleration",
@@ -272,16 +321,5 @@ impl ConstantLimits {
             }
         }
         found
-    }
-
-    /// Checks that no joint is locked by a zero limit.
-    fn require_motion(&self) -> Result<()> {
-        for (name, values) in self.rates() {
-            if let Some(j) = values.iter().position(|value| *value <= 0.0) {
-                let what = format!("{name} limit of joint '{}'", self.joint_name(j));
-                return Err(Error::out_of_range(what, "positive", values[j]));
-            }
-        }
-        Ok(())
     }
 }

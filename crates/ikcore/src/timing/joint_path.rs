@@ -172,9 +172,10 @@ impl JointPath {
         for joint in 0..self.joints.len() {
             let [before, after] = [self.joint_at(piece, end, joint), self.joint_at(piece + 1, 0.0, joint)];
             jump = jump.max((after[order] - before[order]).abs());
-            // The rounding error of the second derivative is proportional to the first.
+            // The rounding error of a derivative is proportional to the lower ones, and to the way where these vanish.
+            let chord = (before[0] - self.joint_at(piece, 0.0, joint)[0]).abs() / end.powi(order as i32);
             let scale = |at: &[f64; 3]| at[1].abs() / end.powi(order as i32 - 1) + at[order].abs();
-            size = size.max(scale(&before)).max(scale(&after));
+            size = size.max(chord).max(scale(&before)).max(scale(&after));
         }
         jump > JUMP_TOLERANCE * size
     }
@@ -208,19 +209,6 @@ impl JointPath {
             }
         }
         range
-    }
-}
-
-/// Checks that these are waypoints of a spline: at least two finite rows, none equal to the previous one. Returns their
-/// number.
-pub(super) fn check_waypoints(joints: &[String], waypoints: &[f64]) -> Result<usize> {
-    let (n, rows) = (joints.len(), waypoint_rows(joints, waypoints)?);
-    match (1..rows).find(|row| waypoints[(row - 1) * n..row * n] == waypoints[row * n..(row + 1) * n]) {
-        None => Ok(rows),
-        Some(row) => {
-            let problem = format!("waypoint {row} is the same as waypoint {}: leave one of them out", row - 1);
-            Err(Error::InvalidPath { problem })
-        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `time_optimal` | [`time_optimal()`]: the fastest timing of a path, and its options |
+//! | `within_tolerance`, `tube` | [`time_optimal_within`]: motions that may leave their path by a tolerance; the smooth paths that compete |
 //! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
 //! | `grid` | the path cut into segments |
@@ -33,8 +34,10 @@ mod spline;
 mod strips;
 mod time_optimal;
 mod time_scaling;
+mod tube;
 mod velocity_curve;
 mod violation;
+mod within_tolerance;
 
 pub use crate::math::cubic_spline::SplineEnds;
 pub use constant_limits::ConstantLimits;
@@ -45,3 +48,4 @@ pub use time_optimal::{TimingOptions, time_optimal};
 pub(crate) use time_optimal::{coarse_duration, time_all};
 pub(crate) use time_scaling::scaled;
 pub use violation::Violation;
+pub use within_tolerance::time_optimal_within;

@@ -1,8 +1,9 @@
 //! Cubic splines through waypoints.
 
+use std::borrow::Cow;
 use std::str::FromStr;
 
-use super::joint_path::{JointPath, POWERS, check_waypoints};
+use super::joint_path::{JointPath, POWERS, waypoint_rows};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint;
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
@@ -22,16 +23,23 @@ impl FromStr for SplineEnds {
 
 impl JointPath {
     /// The cubic spline of `joints` (names) through `waypoints` (rad or m, one row of all joints per point) at the path
-    /// parameters `knots`. `None` means uniform in \[0, 1\].
+    /// parameters `knots`. `None` means uniform in \[0, 1\]. Equal consecutive rows are one row: a rest has no length.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] if a waypoint repeats the previous one,
+    /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where all waypoints are the same,
     /// [`Error::NotIncreasing`] for knots.
     pub fn spline(joints: Vec<String>, waypoints: &[f64], knots: Option<&[f64]>, ends: SplineEnds) -> Result<Self> {
-        let rows = check_waypoints(&joints, waypoints)?;
+        let given = waypoint_rows(&joints, waypoints)?;
+        let knots = knots.map(|knots| check_knots(knots, given)).transpose()?;
+        let kept = rows_that_differ(waypoints, joints.len());
+        if kept.len() < 2 {
+            let problem = "all waypoints are the same: give at least two that differ".into();
+            return Err(Error::InvalidPath { problem });
+        }
+        let (waypoints, rows) = (of_rows(waypoints, joints.len(), &kept), kept.len());
         let breaks = match knots {
             None => (0..rows).map(|row| row as f64 / (rows - 1) as f64).collect(),
-            Some(knots) => check_knots(knots, rows)?,
+            Some(knots) => without_rests(knots, &kept),
         };
         let n = joints.len();
         let spline = CubicSpline::over(breaks, ends);
@@ -54,14 +62,41 @@ impl JointPath {
     }
 }
 
-fn check_knots(knots: &[f64], rows: usize) -> Result<Vec<f64>> {
+/// Indices of the rows that differ from the one before them, and of the first.
+fn rows_that_differ(waypoints: &[f64], n: usize) -> Vec<usize> {
+    let row = |i: usize| &waypoints[i * n..(i + 1) * n];
+    (0..waypoints.len() / n).filter(|&i| i == 0 || row(i) != row(i - 1)).collect()
+}
+
+/// The kept rows, without a copy if these are all.
+fn of_rows<'a>(waypoints: &'a [f64], n: usize, kept: &[usize]) -> Cow<'a, [f64]> {
+    if kept.len() * n == waypoints.len() {
+        return Cow::Borrowed(waypoints);
+    }
+    Cow::Owned(kept.iter().flat_map(|&row| &waypoints[row * n..(row + 1) * n]).copied().collect())
+}
+
+/// Knots of the kept rows, moved together by the rests between them.
+fn without_rests(knots: &[f64], kept: &[usize]) -> Vec<f64> {
+    if kept.len() == knots.len() {
+        return knots.to_vec();
+    }
+    let mut at = knots[0];
+    let moved = kept[1..].iter().map(|&row| {
+        at += knots[row] - knots[row - 1];
+        at
+    });
+    std::iter::once(knots[0]).chain(moved).collect()
+}
+
+fn check_knots(knots: &[f64], rows: usize) -> Result<&[f64]> {
     if knots.len() != rows {
         let expected = format!("{rows} (one per waypoint)");
         return Err(Error::WrongLength { what: "knots".into(), expected, got: knots.len() });
     }
     require_finite("knots", knots, |row| format!("row {row}"))?;
     match (1..rows).find(|&row| knots[row] <= knots[row - 1]) {
-        None => Ok(knots.to_vec()),
+        None => Ok(knots),
         Some(row) => {
             let (previous, value) = (knots[row - 1], knots[row]);
             Err(Error::NotIncreasing { what: "knots".into(), row, previous, value })

@@ -45,7 +45,7 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Tra
     }
     let factor = limits.slowdown(motion);
     if factor == 0.0 {
-        return Err(Error::no_pace(limits.joint_name(0)));
+        return Err(Error::no_pace(&[limits.joint_name(0)], ""));
     }
     within_limits(motion.slowed(factor * CAUTION)?, limits)
 }

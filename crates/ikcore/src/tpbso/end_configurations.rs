@@ -56,10 +56,7 @@ impl EndConfigurations {
         monitor: &mut dyn Monitor,
     ) -> Result<Self> {
         let target = match end {
-            Endpoint::Configuration(q) => {
-                robot.require_within(what, q, &limits.lower, &limits.upper)?;
-                return Ok(Self::Fixed(q.clone()));
-            }
+            Endpoint::Configuration(q) => return Ok(Self::Fixed(q.clone())),
             Endpoint::Targets { targets, .. } => &targets[0],
         };
         if let Some((arm, place)) = planar(robot, target) {

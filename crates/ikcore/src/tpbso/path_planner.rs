@@ -24,7 +24,7 @@ pub(crate) fn along_path(
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.require_velocities(METHOD)?;
-    let start = options.start_within(robot, &limits)?;
+    let start = options.start.as_deref();
     let elbow = start.map_or_else(|| tpbso.elbow_along_path(), |q| Ok(arm.elbow(q)))?;
     let accuracy = options.accuracy.unwrap_or_else(|| ACCURACY * tip_path.extent());
     require_positive("accuracy", accuracy)?;

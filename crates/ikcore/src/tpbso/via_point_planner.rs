@@ -30,6 +30,9 @@ pub(crate) fn point_to_point(
         }
         EndConfigurations::new(what, end, robot, &limits, elbow, options.seed, monitor)
     };
+    if let Endpoint::Configuration(q) = end {
+        limits.position_limits(robot)?.admit(Some(robot), "end", q)?;
+    }
     let [start_elbow, end_elbow] = tpbso.elbows;
     let (start, end) = (configurations("start", start, start_elbow)?, configurations("end", end, end_elbow)?);
     let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, collisions.as_ref());

@@ -16,6 +16,7 @@
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
 //! | `tracked_arm` | accepted configuration, clock, limits and targets |
+//! | `outside_start` | an arm that begins outside its position limits |
 //! | `limited_state` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
@@ -39,6 +40,7 @@ mod current_tasks;
 mod late_sensor;
 mod limited_state;
 mod model_free;
+mod outside_start;
 mod path_approach;
 mod plant;
 mod progress;

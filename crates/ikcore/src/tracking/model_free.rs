@@ -76,8 +76,9 @@ pub fn track_model_free(
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
     let mut session = ControlSession::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
-    let track =
+    let mut track =
         Record::new(start.len(), reference.len(), limits, LimitAt::Interval, (*tolerance).into(), reference.dt());
+    track.start_outside = session.start_outside().to_vec();
     let command = Vec::with_capacity(reference.len() * start.len());
     let mut record = ModelFreeRecord { track, command, fault: None, sensor_delay: None };
     let mut first = FirstMeasurements::new(start.len());

@@ -36,7 +36,7 @@ impl PathApproach {
         options: &TrackOptions,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Self>> {
-        let limits = options.limits_for(robot);
+        let limits = options.limits_for(robot)?;
         if ![Field::Acceleration, Field::Jerk].into_iter().any(|field| limits.is_finite(field)) {
             let problem = message![
                 Setting::Ease,
@@ -85,7 +85,9 @@ impl PathApproach {
 /// Copy of the options without acceleration and jerk limits.
 fn without_rates(limits: &Limits, options: &TrackOptions) -> Result<TrackOptions> {
     let none = || vec![Profile::Constant(f64::INFINITY)];
-    let limits = limits.clone().replace(Field::Acceleration, none())?.replace(Field::Jerk, none())?;
+    let velocity = limits.field(Field::Velocity).unwrap_or_default().to_vec();
+    let limits = limits.clone().replace(Field::Velocity, velocity)?;
+    let limits = limits.replace(Field::Acceleration, none())?.replace(Field::Jerk, none())?;
     Ok(TrackOptions { limits: Some(limits), ..options.clone() })
 }
 

@@ -8,9 +8,10 @@ use super::commanded_motion::{FEWEST, spline};
 use super::step::Step;
 use crate::error::Result;
 use crate::kinematics::ReachShortfall;
-use crate::limits::{Field, LimitAt, Limits, ROUNDING, TickBox};
+use crate::limits::{Field, JointOutside, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
 use crate::message::{Message, Setting, message};
+use crate::obstacle::Measured;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
@@ -52,6 +53,8 @@ pub struct Record {
     pub limit_margin: f64,
     /// Limits in force.
     pub limits: Limits,
+    /// Joints that began outside their position limits, and were led inside.
+    pub start_outside: Vec<JointOutside>,
     /// The error band.
     pub criterion: Criterion,
     /// Distance by which the path is provably out of reach, and its time (s). `None` if the track succeeded or nothing is
@@ -59,6 +62,8 @@ pub struct Record {
     pub out_of_reach: Option<(ReachShortfall, f64)>,
     /// Status of the whole track.
     pub status: Status,
+    /// What was measured of the robot itself, if the arm was in collision with it.
+    pub own_points: Option<Measured>,
     /// Time taken.
     pub elapsed: Duration,
     /// Approach at the start, if requested.
@@ -113,6 +118,8 @@ pub(super) struct Accepted<'a> {
     pub tick_box: &'a TickBox,
     /// Smallest distance from obstacles and between links (m).
     pub clearance: f64,
+    /// The kind of the nearest obstacle, if a sensor measures it.
+    pub measured: Option<Measured>,
 }
 
 impl Record {
@@ -140,9 +147,11 @@ impl Record {
             worst_violation: None,
             limit_margin: f64::INFINITY,
             limits,
+            start_outside: vec![],
             criterion,
             out_of_reach: None,
             status: Status::Lost,
+            own_points: None,
             elapsed: Duration::ZERO,
             ease: Ease::NotAsked,
             limit_at,
@@ -169,6 +178,9 @@ impl Record {
     /// Appends the result of a tick.
     pub(super) fn push(&mut self, accepted: &Accepted<'_>, reference: [f64; 3], step: &Step) {
         self.note_violations(accepted);
+        if step.status == Status::InCollision {
+            self.own_points = self.own_points.or(accepted.measured);
+        }
         self.q.extend_from_slice(accepted.q);
         self.position.push(step.position);
         self.reference.push(reference);
@@ -208,9 +220,19 @@ impl Record {
         for j in 0..q.len() {
             let step = q[j] - self.q[self.q.len() - self.dof + j];
             let too_fast = step.abs() - velocity[j] * self.dt;
-            let outside = larger(floor[j] - q[j], q[j] - ceiling[j]);
+            let [floor, ceiling] = self.led_range(j, [floor[j], ceiling[j]]);
+            let outside = larger(floor - q[j], q[j] - ceiling);
             let excess = larger(too_fast, outside).max(self.too_sudden(j, step, [from, to]));
             self.note_excess(excess, j, q[j], to);
+        }
+    }
+
+    /// Position limits of joint `j` in a tick; those of a joint that began outside reach to its start.
+    fn led_range(&self, j: usize, [floor, ceiling]: [f64; 2]) -> [f64; 2] {
+        let start = self.q[j];
+        match self.start_outside.iter().any(|outside| outside.joint == self.limits.joint_name(j)) {
+            true => [floor.min(start), ceiling.max(start)],
+            false => [floor, ceiling],
         }
     }
 
@@ -324,6 +346,7 @@ impl Record {
                 "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
             }
             None if self.was_held_back() => self.held_back(),
+            None if let Some(lock) = self.limits.lock() => message![lock, "; or ", Status::Lost.advice()],
             None if self.starts_too_fast() => message![
                 "the path moves at its start, where the arm is at rest: ",
                 Setting::Ease,
@@ -334,7 +357,7 @@ impl Record {
                 message![format!("the path is {beyond} at t = {} s: ", time(*when)), Status::OutOfReach.advice()]
             }
         };
-        self.message_with(advice)
+        message![self.message_with(advice), JointOutside::in_words(&self.start_outside, "begins")]
     }
 
     /// Whether obstacles or other links held the arm back.
@@ -349,7 +372,8 @@ impl Record {
             0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
             _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
         };
-        message![format!("in {} steps {phrase}: ", count(status)), status.advice()]
+        let advice = self.own_points.map_or_else(|| status.advice(), Measured::advice);
+        message![format!("in {} steps {phrase}: ", count(status)), advice]
     }
 
     /// Returns [`message`](Self::message) with this `advice` if the track failed.

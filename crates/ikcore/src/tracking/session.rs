@@ -13,8 +13,9 @@ use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
-use crate::limits::Limits;
+use crate::limits::{JointOutside, Limits};
 use crate::math::vector::write_within;
+use crate::message::Message;
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
 use crate::problem::Problem;
@@ -87,6 +88,16 @@ impl Session {
         &self.arm.limits
     }
 
+    /// Names the joints that cannot move because of limits of zero, with the remedy; `None` without such limits.
+    pub fn lock(&self) -> Option<&Arc<Message>> {
+        self.arm.lock.as_ref()
+    }
+
+    /// Joints that began outside their position limits; empty once all are inside.
+    pub fn start_outside(&self) -> &[JointOutside] {
+        self.arm.outside.as_ref().map_or(&[], |outside| &outside.joints)
+    }
+
     /// Time step (s).
     pub fn dt(&self) -> f64 {
         self.arm.dt
@@ -121,8 +132,14 @@ impl Session {
 
     /// Configuration and box of the last tick.
     pub(super) fn accepted(&self) -> Accepted<'_> {
-        let clearance = self.space().map_or(f64::NAN, |space| space.clearance(&self.arm.q).distance);
-        Accepted { q: &self.arm.q, tick_box: &self.arm.tick_box, clearance }
+        let clearance = self.space().map(|space| space.clearance(&self.arm.q));
+        let nearest = clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        Accepted {
+            q: &self.arm.q,
+            tick_box: &self.arm.tick_box,
+            measured: nearest.and_then(|nearest| nearest.contact.measured()),
+            clearance: clearance.map_or(f64::NAN, |clearance| clearance.distance),
+        }
     }
 
     /// The tracked robot.
@@ -181,9 +198,13 @@ impl Session {
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let mut found = if self.stopping || self.arm.targets.last().is_empty() {
+            self.arm.allow_braking();
             self.brake()
         } else {
-            self.run_rule(sampled_ago, monitor)
+            // The rule leads a joint that is outside its limits inside; the filter may hold it where it is.
+            let found = self.run_rule(sampled_ago, monitor);
+            self.arm.allow_braking();
+            found
         };
         let held = !found.interrupted && !self.stopping && self.filter(&mut found);
         self.keep_in_region(&mut found);
@@ -319,7 +340,8 @@ impl Session {
         let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
-        let space = if surroundings.is_given() { surroundings.clear_space(&self.arm.robot)? } else { None };
+        let space =
+            if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
         if space.is_some() || !self.arm.has_one_tip() {
             let safety = match self.safety.take() {
                 Some(safety) => self.safety.insert(safety),

@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::JointOutside;
 use crate::message::{Message, message};
+use crate::obstacle::{Contact, Measured};
 use crate::solver::Status;
 use crate::task::TipError;
 
@@ -30,8 +32,24 @@ pub struct Step {
 impl Step {
     /// Returns a sentence on the outcome, with advice.
     pub fn message(&self) -> Message {
+        self.message_with(self.status.advice(), &[])
+    }
+
+    /// Returns the advice where the nearest contact is known. An arm that is in collision with what a sensor measured is
+    /// probably in it itself.
+    pub fn advice_near(&self, nearest: &Contact) -> Message {
+        let measured = nearest.measured().filter(|_| self.status == Status::InCollision);
+        measured.map_or_else(|| self.status.advice(), Measured::advice)
+    }
+
+    /// Returns [`message`](Self::message) with this `advice`, of an arm that began with the joints `outside` their limits.
+    pub fn message_with(&self, advice: impl Into<Message>, outside: &[JointOutside]) -> Message {
         let error = &self.error;
-        let limits = if self.inside_limits { "" } else { "; a joint is outside its limits and returns" };
+        let limits = match (outside, self.inside_limits) {
+            ([], true) => String::new(),
+            ([], false) => "; a joint is outside its limits and returns".into(),
+            _ => JointOutside::in_words(outside, "began"),
+        };
         let how = match self.status {
             Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
@@ -40,6 +58,6 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), self.status.advice()]
+        message![format!("{how}, {error} away{limits}: "), advice]
     }
 }

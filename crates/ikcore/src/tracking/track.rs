@@ -50,7 +50,7 @@ pub fn track_tips(
         let does = " is for one tip: leave it out, or bring the arms to the paths first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
-    let limits = options.limits_for(robot);
+    let limits = options.limits_for(robot)?;
     limits.validate(first.dt(), first.len() - 1)?;
     options.require_tips(robot)?;
     let only = options.only_task()?; // checked before a start is solved with other tolerances
@@ -66,6 +66,7 @@ pub fn track_tips(
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
     let limits = session.limits().clone();
     let mut record = Record::new(start.len(), first.len(), limits, options.limit_at, criterion, first.dt());
+    record.start_outside = session.start_outside().to_vec();
     let beginning = session.begin(asked.arrival(0))?;
     asked.push(&session, &beginning, &mut record);
     if options.ease {

@@ -3,7 +3,7 @@
 use super::rule::TickRule;
 use super::target_filter::TargetFilter;
 use crate::error::{Error, Result};
-use crate::limits::{LimitAt, Limits};
+use crate::limits::{LimitAt, Limits, StartSlack};
 use crate::message::Setting;
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
@@ -22,6 +22,8 @@ pub struct TrackOptions {
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
+    /// Distance beyond a position limit in which a start is taken and led inside.
+    pub start_slack: StartSlack,
     /// Time within a tick at which its velocity limit is evaluated.
     pub limit_at: LimitAt,
     /// Filter of the targets. `None` means none.
@@ -59,7 +61,14 @@ impl TrackOptions {
     }
 
     /// Limits in force for `robot`.
-    pub(super) fn limits_for(&self, robot: &Robot) -> Limits {
-        self.limits.clone().unwrap_or_else(|| Limits::of(robot))
+    ///
+    /// # Errors
+    /// [`Error::NoPace`] for a joint that nothing slows down, unless infinite velocity limits were given;
+    /// [`Error::WrongLength`].
+    pub(super) fn limits_for(&self, robot: &Robot) -> Result<Limits> {
+        let limits = self.limits.clone().unwrap_or_else(|| Limits::of(robot));
+        limits.require_for(robot)?;
+        limits.require_pace_or_consent()?;
+        Ok(limits)
     }
 }

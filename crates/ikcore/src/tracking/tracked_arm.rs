@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use super::current_tasks::CurrentTasks;
 use super::limited_state::LimitedState;
+use super::outside_start::OutsideStart;
 use super::repeated_targets::RepeatedTargets;
 use super::rule::TickResult;
 use super::step_context::StepContext;
 use super::target_stream::TargetStream;
 use super::track_options::TrackOptions;
 use crate::error::Result;
-use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::limits::{AdmittedStart, Field, LimitAt, Limits, StartSlack, TickBox};
+use crate::message::Message;
 use crate::objective::Point;
 use crate::robot::Robot;
 use crate::task::Aims;
@@ -20,6 +22,8 @@ use crate::task::Aims;
 pub(super) struct TrackedArm {
     pub robot: Arc<Robot>,
     pub limits: Limits,
+    /// Names the joints that limits of zero lock.
+    pub lock: Option<Arc<Message>>,
     pub limit_at: LimitAt,
     pub tick_box: TickBox,
     /// State and reachable set under acceleration or jerk limits.
@@ -29,6 +33,9 @@ pub(super) struct TrackedArm {
     pub dt: f64,
     pub ticks: usize,
     pub q: Point,
+    /// Joints that began outside their limits, until all are inside.
+    pub outside: Option<Box<OutsideStart>>,
+    start_slack: StartSlack,
     /// Configuration at the start of the last tick.
     pub before: Point,
     /// Squared error accepted in the previous tick, which a random search must beat.
@@ -41,8 +48,7 @@ impl TrackedArm {
     /// # Errors
     /// Errors of wrong tasks, limits or settings of targets, and of a start outside limits or region.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot));
-        limits.require_for(robot)?;
+        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot)?);
         limits.validate(dt, 0)?;
         let limited = LimitedState::new(&limits, dt);
         let repeated = options.rule.extrapolates(limited.is_some()).then(|| RepeatedTargets::new(dt));
@@ -51,22 +57,26 @@ impl TrackedArm {
             require_room_to_stop(&limits)?;
         }
         robot.check("start", start)?;
+        let AdmittedStart { q, outside } = limits.admit_start(Some(robot), "start", start, &options.start_slack)?;
         let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
         let arm = Self {
             robot,
-            tick_box: TickBox::around(start, &limits),
+            tick_box: TickBox::around(&q, &limits),
             limited,
+            lock: limits.lock().map(Arc::new),
             limits,
             limit_at: options.limit_at,
             tasks,
             targets,
             dt,
             ticks: 0,
-            q: Point::from_slice(start),
-            before: Point::from_slice(start),
+            outside: OutsideStart::new(outside),
+            start_slack: options.start_slack.clone(),
+            q: Point::from_slice(&q),
+            before: Point::from_slice(&q),
             last_value: None,
         };
-        arm.require_inside("start", start)?;
+        arm.require_in_region("start", &q)?;
         Ok(arm)
     }
 
@@ -119,6 +129,18 @@ impl TrackedArm {
         limited.as_mut().is_none_or(|limited| limited.narrow(q, time, limits, tick_box))
     }
 
+    /// Widens the box of a tick of an arm that began outside its limits to the command that brakes: obstacles may be in its way inside.
+    pub fn allow_braking(&mut self) {
+        if self.outside.is_none() {
+            return;
+        }
+        let brake = self.limited.as_ref().map_or_else(|| self.q.clone(), |limited| limited.stopping(&self.q));
+        let (lower, upper) = self.tick_box.bounds.parts_mut();
+        for (j, brake) in brake.iter().enumerate() {
+            (lower[j], upper[j]) = (lower[j].min(*brake), upper[j].max(*brake));
+        }
+    }
+
     /// Whether the region keeps the only tip from its target.
     pub fn is_blocked_by_region(&self) -> bool {
         let only = self.aims().only(&self.robot);
@@ -136,6 +158,9 @@ impl TrackedArm {
 
     /// Ends the tick at `q`.
     pub fn accept(&mut self, q: &[f64], value: f64) {
+        if self.outside.is_some() && OutsideStart::has_returned([&self.tick_box.floor, &self.tick_box.ceiling], q) {
+            self.outside = None;
+        }
         if let Some(limited) = &mut self.limited {
             limited.advance(&self.q, q);
         }
@@ -151,7 +176,9 @@ impl TrackedArm {
     /// As for the start of [`new`](Self::new), and for an arm that could not stop inside its limits; the arm is then as before.
     pub fn reset(&mut self, q: &[f64], [qd, qdd]: [Option<&[f64]>; 2]) -> Result<()> {
         self.robot.check("q", q)?;
-        self.require_inside("q", q)?;
+        let AdmittedStart { q, outside } = self.limits.admit_start(Some(&self.robot), "q", q, &self.start_slack)?;
+        let q = &q[..];
+        self.require_in_region("q", q)?;
         let zero = Point::from_elem(0.0, q.len());
         let (qd, qdd) = (qd.unwrap_or(&zero), qdd.unwrap_or(&zero));
         self.robot.check("qd", qd)?;
@@ -159,6 +186,7 @@ impl TrackedArm {
         if let Some(limited) = &mut self.limited {
             limited.set(q, [qd, qdd], &self.limits)?;
         }
+        self.outside = OutsideStart::new(outside);
         self.q.copy_from_slice(q);
         self.before = q.iter().zip(qd).map(|(q, qd)| q - self.dt * qd).collect();
         (self.ticks, self.last_value) = (0, None);
@@ -166,9 +194,8 @@ impl TrackedArm {
         Ok(())
     }
 
-    /// Checks that `q` is within the position limits and that its tip is in the region; `what` names it in the error.
-    fn require_inside(&self, what: &str, q: &[f64]) -> Result<()> {
-        self.limits.require_inside(what, 0.0, q)?;
+    /// Checks that the tip is in the region at `q`; `what` names it in the error.
+    fn require_in_region(&self, what: &str, q: &[f64]) -> Result<()> {
         let region = self.tasks.region();
         region.map_or(Ok(()), |region| region.require_inside(what, &self.robot.tip_position(q)))
     }

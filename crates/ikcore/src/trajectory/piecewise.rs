@@ -221,6 +221,17 @@ impl Trajectory {
         Self::from_phases(self.joints.clone(), knots, self.coefficients.iter().map(slow).collect())
     }
 
+    /// The configuration at the start (n,) (rad or m).
+    pub(crate) fn start(&self) -> Vec<f64> {
+        self.segment(0).iter().map(|polynomial| polynomial[0]).collect()
+    }
+
+    /// The configuration at the end (n,) (rad or m).
+    pub(crate) fn end(&self) -> Vec<f64> {
+        let last = self.knots.segments() - 1;
+        self.segment(last).iter().map(|polynomial| value(polynomial, self.knots.span(last))).collect()
+    }
+
     /// The exact lowest and highest position of each joint (rad or m).
     pub fn position_range(&self) -> Vec<(f64, f64)> {
         let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); self.joints.len()];

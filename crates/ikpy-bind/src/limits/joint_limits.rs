@@ -143,10 +143,12 @@ impl PyLimits {
         }
     }
 
-    /// Returns the robot's limits plus the maker's acceleration and jerk limits, where known.
+    /// Returns the robot's limits plus the maker's acceleration and jerk limits, where known. Unknown velocity limits are left out:
+    /// given infinite ones would say that jumps are meant.
     pub fn rated(robot: &Robot) -> Self {
         let mut limits = Self::of(robot);
         let known = |values: Vec<f64>| if values.iter().any(|v| v.is_finite()) { numbers(values) } else { None };
+        limits.given[Field::Velocity as usize] = known(robot.joints().iter().map(|j| j.velocity).collect());
         let joints = robot.joints().iter();
         limits.given[Field::Acceleration as usize] = known(joints.clone().map(|j| j.rated_acceleration).collect());
         limits.given[Field::Jerk as usize] = known(joints.map(|j| j.rated_jerk).collect());

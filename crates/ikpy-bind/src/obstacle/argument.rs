@@ -62,7 +62,7 @@ pub fn read_surroundings(
     Ok(Surroundings { obstacles, margin, self_collision })
 }
 
-/// The obstacles of a `Scene`, read and prepared once.
+/// The obstacles of a `Scene`, read and prepared once; `carried` are link and name of each body that the robot carries there.
 #[pyclass(name = "PreparedObstacles", module = "beetle_ik._core", frozen)]
 pub struct PyPreparedObstacles {
     core: Obstacles,
@@ -72,8 +72,10 @@ pub struct PyPreparedObstacles {
 #[pymethods]
 impl PyPreparedObstacles {
     #[new]
-    fn new(py: Python<'_>, obstacles: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (obstacles, carried=vec![]))]
+    fn new(py: Python<'_>, obstacles: &Bound<'_, PyAny>, carried: Vec<[String; 2]>) -> PyResult<Self> {
         let GivenObstacles { core, tuple } = GivenObstacles::read(py, Some(obstacles))?;
+        let core = if carried.is_empty() { core } else { Obstacles::beside_carried(core.to_vec(), carried) };
         Ok(Self { core, tuple })
     }
 }

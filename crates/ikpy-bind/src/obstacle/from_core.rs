@@ -48,10 +48,10 @@ pub fn wrapped(py: Python<'_>, obstacle: &Obstacle) -> PyResult<Py<PyAny>> {
         }
         Geometry::Mesh(_) => Bound::new(py, base.add_subclass(PyMesh))?.into_any(),
         Geometry::PointCloud(cloud) => {
-            Bound::new(py, base.add_subclass(PyPointCloud { radius: cloud.radius() }))?.into_any()
+            Bound::new(py, base.add_subclass(PyPointCloud { radius: cloud.radius(), removed: 0 }))?.into_any()
         }
         Geometry::Grid(grid) => {
-            let own = PyGrid { origin: Coordinates(grid.origin()), voxel: grid.voxel() };
+            let own = PyGrid { origin: Coordinates(grid.origin()), voxel: grid.voxel(), removed: 0 };
             Bound::new(py, base.add_subclass(own))?.into_any()
         }
     };

@@ -18,6 +18,7 @@ use crate::path::PyPath;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, derivative_free_solver};
+use crate::start_gate::read_slack;
 use crate::task::read_task;
 use crate::units;
 use crate::wording::said;
@@ -28,6 +29,8 @@ use crate::wording::said;
 ///     robot: the arm.
 ///     path: a `Path`, whose timing is ignored, or points (k, 3) (m) or poses (k, 4, 4), joined by straight lines.
 ///     start_q: joint positions (n,) at the start; None: chosen by the planner.
+///     start_slack: as for `plan_point_to_point`; where no motion leads a joint inside at once, it goes no farther out, and is inside
+///         at the end.
 ///     task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
 ///         `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
 ///         whole pose.
@@ -56,7 +59,7 @@ use crate::wording::said;
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
 ///         a robot without bodies.
-///     LimitError: limits that contradict each other.
+///     LimitError: limits that contradict each other; a start farther outside them than start_slack.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
 ///
@@ -68,9 +71,9 @@ use crate::wording::said;
 ///     >>> plan.success
 ///     True
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, task=None, limits=None, method=None, objective="time", obstacles=None,
+#[pyo3(signature = (robot, path, *, start_q=None, start_slack=None, task=None, limits=None, method=None, objective="time", obstacles=None,
                     margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),
-       text_signature = "(robot, path, *, start_q=None, task=None, limits=None, method='timed', objective='time', \
+       text_signature = "(robot, path, *, start_q=None, start_slack=None, task=None, limits=None, method='timed', objective='time', \
                          obstacles=None, margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, \
                          progress=None)")]
 #[allow(clippy::too_many_arguments)]
@@ -79,6 +82,7 @@ pub fn plan_along_path(
     robot: &Bound<'_, PyRobot>,
     path: &Bound<'_, PyAny>,
     start_q: Option<&Bound<'_, PyAny>>,
+    start_slack: Option<&Bound<'_, PyAny>>,
     task: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
@@ -103,6 +107,7 @@ pub fn plan_along_path(
         method: read_method(method)?,
         objective: objective.parse().map_err(raise)?,
         start: start_q.map(|q| joint_vector(&arm, "start_q", q)).transpose()?,
+        start_slack: read_slack(start_slack)?,
         task: read_task(task)?,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,

@@ -195,9 +195,9 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 ///     >>> plans.success.tolist()
 ///     [True, True, False]
 #[pyfunction]
-#[pyo3(signature = (robot, problems, *, threads=None, progress=None, approach=None, retreat=None, free_start=None, task=None,
+#[pyo3(signature = (robot, problems, *, threads=None, progress=None, start_slack=None, end_turns=None, approach=None, retreat=None, free_start=None, task=None,
                     limits=None, method=None, objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None),
-       text_signature = "(robot, problems, *, threads=None, progress=None, approach=None, retreat=None, \
+       text_signature = "(robot, problems, *, threads=None, progress=None, start_slack=None, end_turns='nearest', approach=None, retreat=None, \
                          free_start=False, task=None, limits=None, method='minmax', objective='time', obstacles=None, \
                          margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
@@ -207,6 +207,8 @@ pub fn plan_batch<'py>(
     problems: &Bound<'py, PyAny>,
     threads: Option<i128>,
     progress: Option<&Bound<'py, PyAny>>,
+    start_slack: Option<Bound<'py, PyAny>>,
+    end_turns: Option<Bound<'py, PyAny>>,
     approach: Option<Bound<'py, PyAny>>,
     retreat: Option<Bound<'py, PyAny>>,
     free_start: Option<Bound<'py, PyAny>>,
@@ -222,6 +224,8 @@ pub fn plan_batch<'py>(
 ) -> PyResult<PyBatchPlan> {
     let common = PlanArguments {
         start_qd: None,
+        start_slack,
+        end_turns,
         approach,
         retreat,
         free_start,

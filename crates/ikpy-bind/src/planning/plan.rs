@@ -19,6 +19,7 @@ use crate::outcome::outcome;
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
+use crate::start_gate::{Outside, plain};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
 
@@ -105,6 +106,19 @@ impl PyPlan {
     #[getter]
     fn chosen_end(&self) -> Option<usize> {
         self.core.chosen_end
+    }
+
+    /// Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m).
+    #[getter]
+    fn start_outside(&self) -> Vec<Outside> {
+        plain(&self.core.start_outside)
+    }
+
+    /// Joints that went the short way round, and end whole turns away from the given end_q, each (joint, value at the end, value
+    /// given) (rad).
+    #[getter]
+    fn end_turned(&self) -> Vec<(String, f64, f64)> {
+        self.core.end_turned.iter().map(|turned| (turned.joint.clone(), turned.value, turned.given)).collect()
     }
 
     /// Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and

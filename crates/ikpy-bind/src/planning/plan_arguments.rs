@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ikcore::obstacle::Surroundings;
-use ikcore::planning::{Endpoint, PointToPointOptions};
+use ikcore::planning::{EndTurns, Endpoint, PointToPointOptions};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -19,6 +19,7 @@ use crate::obstacle::GivenObstacles;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
+use crate::start_gate::read_slack;
 use crate::task::read_task;
 
 type Argument<'py> = Option<Bound<'py, PyAny>>;
@@ -44,6 +45,8 @@ impl EndArguments<'_> {
 #[derive(Default, Clone)]
 pub struct PlanArguments<'py> {
     pub start_qd: Argument<'py>,
+    pub start_slack: Argument<'py>,
+    pub end_turns: Argument<'py>,
     pub approach: Argument<'py>,
     pub retreat: Argument<'py>,
     pub free_start: Argument<'py>,
@@ -97,6 +100,8 @@ impl PlanArguments<'_> {
         let objective = objective.transpose()?;
         let stop = self.stop.as_ref().map(|stop| cast::<PyStop>("stop", stop)).transpose()?;
         let core = PointToPointOptions {
+            start_slack: read_slack(self.start_slack.as_ref())?,
+            end_turns: self.end_turns()?,
             start_velocity: self.start_qd.as_ref().map(|qd| vector("start_qd", qd)).transpose()?,
             approach: read_line("approach", self.approach.as_ref())?,
             retreat: read_line("retreat", self.retreat.as_ref())?,
@@ -118,6 +123,15 @@ impl PlanArguments<'_> {
             seed: extracted("seed", self.seed.as_ref())?.map_or(Ok(0), |seed: i128| count("seed", seed))?,
         };
         Ok(ReadOptions { core: Arc::new(core), limits: in_force, obstacles: obstacles.tuple })
+    }
+}
+
+impl PlanArguments<'_> {
+    /// The whole turns of end configurations.
+    fn end_turns(&self) -> PyResult<EndTurns> {
+        let Some(value) = &self.end_turns else { return Ok(EndTurns::default()) };
+        let name = text(value).map_err(|error| in_argument("end_turns", value, error))?;
+        name.parse().map_err(raise)
     }
 }
 
@@ -167,7 +181,7 @@ macro_rules! named {
 
 named!(EndArguments: start, end, start_q, end_q);
 named!(
-    PlanArguments: start_qd, approach, retreat, free_start, task, limits, method, objective, obstacles, margin,
+    PlanArguments: start_qd, start_slack, end_turns, approach, retreat, free_start, task, limits, method, objective, obstacles, margin,
     self_collision, stop, seed
 );
 

@@ -20,6 +20,10 @@ use crate::wording::said;
 ///     start_q, end_q: joint positions (n,) instead; for the end also several, (k, n).
 ///     start_qd: velocity at the start (n,) (rad/s, m/s), with start_q, "minmax" and acceleration or jerk limits; None: at
 ///         rest. If the arm cannot move to the end directly, it first stops as quickly as the limits allow.
+///     start_slack: how far start_q may be outside its position limits (rad, m), a number or (n,); the motion then begins there and
+///         goes inside. None: 5 degrees, 5 mm for joints that slide. Rounding is taken off in any case.
+///     end_turns: "nearest": joints that turn without limits go the short way round, and may end whole turns away from end_q (see
+///         `Plan.end_turned`); among obstacles they go the other way where that is free. "as_given": they end at end_q.
 ///     approach: straight line of the tip before the end: its length (m), along the tip's z axis, or a `StraightLine`.
 ///         The line has constant orientation, begins and ends at rest, and is followed within 0.1 mm.
 ///     retreat: straight line of the tip after the start, against the z axis, otherwise like `approach`.
@@ -43,7 +47,8 @@ use crate::wording::said;
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
 ///         only if none can be reached.
-///     LimitError: limits that contradict each other or exclude an end.
+///     LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
+///         joint and the remedy).
 ///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 ///
@@ -56,11 +61,11 @@ use crate::wording::said;
 ///     >>> plan.success
 ///     True
 #[pyfunction]
-#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, approach=None, retreat=None,
-                    free_start=None, task=None, limits=None, method=None, objective=None, obstacles=None, margin=None,
+#[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, start_slack=None, end_turns=None,
+                    approach=None, retreat=None, free_start=None, task=None, limits=None, method=None, objective=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=None, progress=None),
-       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, approach=None, \
-                         retreat=None, free_start=False, task=None, limits=None, method='minmax', objective='time', \
+       text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, start_slack=None, \
+                         end_turns='nearest', approach=None, retreat=None, free_start=False, task=None, limits=None, method='minmax', objective='time', \
                          obstacles=None, margin=None, self_collision=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point<'py>(
@@ -71,6 +76,8 @@ pub fn plan_point_to_point<'py>(
     start_q: Option<Bound<'py, PyAny>>,
     end_q: Option<Bound<'py, PyAny>>,
     start_qd: Option<Bound<'py, PyAny>>,
+    start_slack: Option<Bound<'py, PyAny>>,
+    end_turns: Option<Bound<'py, PyAny>>,
     approach: Option<Bound<'py, PyAny>>,
     retreat: Option<Bound<'py, PyAny>>,
     free_start: Option<Bound<'py, PyAny>>,
@@ -89,6 +96,8 @@ pub fn plan_point_to_point<'py>(
     let ends = EndArguments { start, end, start_q, end_q };
     let asked = PlanArguments {
         start_qd,
+        start_slack,
+        end_turns,
         approach,
         retreat,
         free_start,

@@ -1,12 +1,14 @@
 //! `time_optimal`.
 
-use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest};
+use ikcore::planning::{
+    ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest, time_optimal_within,
+};
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
 use crate::convert::{array, optional_count, shape_text, vector};
 use crate::error::{invalid, raise};
-use crate::limits::PyLimits;
+use crate::limits::{PerJoint, PyLimits};
 use crate::monitor::long_call;
 use crate::trajectory::{PyTrajectory, names};
 
@@ -28,15 +30,20 @@ use crate::trajectory::{PyTrajectory, names};
 ///         no longer improves.
 ///     start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
 ///     joint_names: n names; None: "q1", "q2" and so on.
+///     tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
+///         parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
+///         is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+///
+/// Equal consecutive rows, as a recording has at rest, are one waypoint.
 ///
 /// Returns:
-///     A `Trajectory` exactly on the path: polynomials of degree 6 between grid points. With jerk limits it consists of
-///     quintic segments that meet the path at their ends.
+///     A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
+///     points. With jerk limits it consists of quintic segments that meet the path at their ends.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two waypoints, or a waypoint equal to the one before it.
+///     InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
 ///     InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-///     UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline.
+///     UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
 ///
 /// For example:
 ///
@@ -46,7 +53,7 @@ use crate::trajectory::{PyTrajectory, names};
 ///     1.8
 #[pyfunction]
 #[pyo3(signature = (waypoints_q, limits, *, knots=None, spline="natural", blend=None, gridpoints=None, start_speed=0.0,
-                    end_speed=0.0, joint_names=None))]
+                    end_speed=0.0, joint_names=None, tolerance=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn time_optimal(
     py: Python<'_>,
@@ -59,6 +66,7 @@ pub fn time_optimal(
     start_speed: f64,
     end_speed: f64,
     #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
+    tolerance: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrajectory> {
     let waypoints = array("waypoints_q", waypoints_q)?;
     let &[_, n @ (1..)] = waypoints.shape() else {
@@ -86,5 +94,11 @@ pub fn time_optimal(
         let knots = knots.as_deref();
         Box::new(move || JointPath::spline(joints, waypoints, knots, ends))
     };
-    long_call(py, || fastest(&path()?, &limits, &options)).map(PyTrajectory::from)
+    let tolerance = tolerance.map(|given| PerJoint::read("tolerance", given)).transpose()?;
+    let tolerance = tolerance.map(|given| if given.single { vec![given.values[0]; n] } else { given.values });
+    long_call(py, || match tolerance {
+        None => fastest(&path()?, &limits, &options),
+        Some(tolerance) => time_optimal_within(&path()?, &tolerance, &limits, &options),
+    })
+    .map(PyTrajectory::from)
 }

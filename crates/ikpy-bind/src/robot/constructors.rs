@@ -42,10 +42,13 @@ impl PyRobot {
     ///         list is refused.
     ///
     /// Joints may be revolute, continuous, prismatic, fixed or mimic. Visuals and unknown tags are ignored, and so is
-    /// `safety_controller`. A missing velocity limit means infinite; zero locks the joint.
+    /// `safety_controller`. A revolute or prismatic joint of the chain needs a `<limit>`; one without lower and upper is
+    /// unlimited, and continuous if it turns. Velocity limits may be missing; zero locks the joint. Acceleration,
+    /// deceleration (the smaller of both counts) and jerk of URDF 1.2 are in `rated_limits`.
     ///
     /// Raises:
-    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, or several leaves and no `tip`.
+    ///     UrdfError: not XML, no joint, a cycle, two roots, a zero axis, a joint without `<limit>`, or several leaves and
+    ///         no `tip`.
     ///     UnknownNameError: no link of that name; the message lists them.
     #[staticmethod]
     #[pyo3(signature = (path_or_xml, *, base=None, tip=None, hold=None, srdf=None, collision=Some("primitives"),
@@ -97,15 +100,17 @@ impl PyRobot {
     ///     trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
     ///         anyone.
     ///
-    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Joints that an equality constraint couples
-    /// linearly follow their master. Geoms that collide become bodies, except ellipsoids, planes and height fields,
-    /// which are listed in `unread_collision_shapes`.
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints, linear ones are
+    /// followed: couplings of joints or fixed tendons, locks, and whatever follows from these, such as a parallelogram.
+    /// Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
+    /// `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
+    /// ellipsoids, planes and height fields, which are listed in `unread_collision_shapes`.
     ///
     /// Raises:
     ///     BeetleIkError: MuJoCo is not installed.
     ///     UnknownNameError: no body or site of that name; the message lists them.
-    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or a joint coupled in
-    ///         another way.
+    ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or an equality (connect,
+    ///         weld, tendon, polynomial coupling) that joints of the chain do not keep.
     #[staticmethod]
     #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives"), trusted=false),
            text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives', trusted=False)")]

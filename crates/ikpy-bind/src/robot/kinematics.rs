@@ -47,21 +47,6 @@ impl PyRobot {
         }
     }
 
-    /// Clips q to the position limits: (n,) for q (n,), (m, n) for q (m, n).
-    fn clip<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let n = self.core.dof();
-        match joint_rows(&self.core, "joint angles", q)? {
-            Rows::One(q) => {
-                self.core.check("joint angles", q.as_slice()?).map_err(raise)?;
-                table(py, self.core.clip_all(q.as_slice()?).map_err(raise)?, &[n]).map(own)
-            }
-            Rows::Many(q, m) => {
-                let (robot, q) = (&*self.core, q.as_slice()?);
-                table(py, in_pieces(py, q, n, QUICK_ROWS, |q| robot.clip_all(q))?, &[m, n]).map(own)
-            }
-        }
-    }
-
     /// Returns the poses of the links of the chain at q (n,), in the order of `link_names`: (links, 4, 4).
     fn link_poses<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let poses = self.core.link_poses(&joint_vector(&self.core, "joint angles", q)?).map_err(raise)?;

@@ -3,6 +3,7 @@
 mod body;
 mod chain_elements;
 mod constructors;
+mod joint_values;
 mod kinematics;
 mod manipulability;
 mod model;

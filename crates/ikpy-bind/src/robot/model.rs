@@ -164,8 +164,8 @@ impl PyRobot {
     }
 
     /// The maker's rated limits: `limits`, plus acceleration and jerk limits where the maker publishes them (`panda`
-    /// and `fr3`, from the maker's "Robot and interface specifications"). Pass them as `limits=`: no call uses them by
-    /// default.
+    /// and `fr3`, from the maker's "Robot and interface specifications") or a URDF 1.2 has them. Pass them as `limits=`:
+    /// no call uses them by default.
     #[getter]
     fn rated_limits(&self) -> PyLimits {
         PyLimits::rated(&self.core)

@@ -11,6 +11,7 @@ use crate::convert::{count, summary};
 use crate::error::{invalid, raise};
 use crate::goal::read_goals;
 use crate::solver::{known_solver, solver_names};
+use crate::start_gate::read_slack;
 
 /// Arguments of `track` and `Tracker` as given. The rule is read beforehand: it decides how a path is sampled.
 pub struct TrackArguments<'a, 'py> {
@@ -21,6 +22,7 @@ pub struct TrackArguments<'a, 'py> {
     pub surroundings: Surroundings,
     pub seed: i128,
     pub limit_at: &'a str,
+    pub start_slack: Option<&'a Bound<'py, PyAny>>,
 }
 
 impl TrackArguments<'_, '_> {
@@ -35,6 +37,7 @@ impl TrackArguments<'_, '_> {
             limits,
             surroundings: self.surroundings,
             ease: false,
+            start_slack: read_slack(self.start_slack)?,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
             ..TrackOptions::default()

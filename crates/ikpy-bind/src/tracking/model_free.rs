@@ -128,7 +128,8 @@ impl PyModelFreeResult {
 ///         exception or returns anything else, the run ends with the record so far; on the first measurement, the
 ///         exception propagates.
 ///     path: reference positions, or poses, over time.
-///     start: (n,), configuration at t = 0 (rad, m).
+///     start: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
+///         inside.
 ///     dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
 ///     controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
 ///     limits: lower, upper and velocity limits, kept by all commands, including probes: each is reachable from the
@@ -143,7 +144,7 @@ impl PyModelFreeResult {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a delay longer than the run.
-///     LimitError: a start outside the limits, or a negative limit.
+///     LimitError: a start more than 5 degrees outside the limits, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, which no controller keeps.
 ///
 /// For example:

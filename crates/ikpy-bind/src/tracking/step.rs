@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use ikcore::limits::JointOutside;
 use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
@@ -38,10 +39,14 @@ pub struct PyStep {
     #[pyo3(get)]
     limits: Py<PyLimits>,
     elapsed: Duration,
+    /// Joints that began outside their limits, if any still was.
+    outside: Vec<JointOutside>,
     /// Errors by tip.
     tips: TipErrors,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
+    /// Names the joints that limits of zero lock.
+    lock: Option<Arc<Message>>,
     /// Sentence about a target whose rotation had drifted.
     drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
@@ -95,13 +100,13 @@ impl PyStep {
     }
 
     /// Smallest distance (m) between the robot and obstacles, or between two of its links, at `q`; negative by the depth of an overlap.
-    /// NaN without `obstacles=` and `self_collision=True`; inf if nothing can touch.
+    /// NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
         self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
-    /// The nearest two bodies at `q`, a `Nearest`; None without `obstacles=` and `self_collision=True`, or if nothing can touch.
+    /// The nearest two bodies at `q`, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
         self.around().as_ref()?.nearest.clone().map(PyNearest::from)
@@ -112,25 +117,29 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around());
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.outside);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, &self.drift))
+        let lock = self.lock.as_deref().map(said);
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None, drift=None))]
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None))]
     fn _restore(
         py: Python<'_>,
         bytes: &[u8],
         limits: Py<PyLimits>,
         tips: Option<&[u8]>,
+        lock: Option<String>,
         drift: Option<String>,
     ) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>) =
+        let (core, q, qd, elapsed, around, outside): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
             from_bytes("step", bytes).map_err(raise)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(TipErrors::restored(tips)?);
-        Ok(Self { around: OnceLock::from(around), drift, ..step })
+        let tips = TipErrors::restored(tips)?;
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside);
+        let lock = lock.map(|lock| Arc::new(lock.into()));
+        Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
 }
 
@@ -144,11 +153,18 @@ impl PyStep {
             qd,
             limits,
             elapsed,
+            outside: vec![],
             tips: TipErrors::unnamed(),
             among: None,
+            lock: None,
             drift: None,
             around: OnceLock::new(),
         }
+    }
+
+    /// Adds the joints that began outside their limits.
+    pub fn led_from(self, outside: Vec<JointOutside>) -> Self {
+        Self { outside, ..self }
     }
 
     /// Adds the errors by tip.
@@ -166,17 +182,28 @@ impl PyStep {
         Self { among: space.map(|space| (space, q)), ..self }
     }
 
+    /// Adds the joints that limits of zero lock.
+    pub fn of_locked(self, lock: Option<Arc<Message>>) -> Self {
+        Self { lock, ..self }
+    }
+
     fn around(&self) -> &Option<Clearance> {
         self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.clearance(q)))
     }
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let message = match &self.drift {
-            Some(drift) => format!("{}; {drift}", said(&self.core.message())).into(),
-            None => self.core.message(),
-        };
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
+        let advice = match (&self.lock, nearest) {
+            (Some(lock), _) if self.core.status == Status::Capped => Message::clone(lock),
+            (_, Some(nearest)) => self.core.advice_near(&nearest.contact),
+            _ => self.core.status.advice(),
+        };
+        let message = self.core.message_with(advice, &self.outside);
+        let message = match &self.drift {
+            Some(drift) => format!("{}; {drift}", said(&message)).into(),
+            None => message,
+        };
         match (self.core.status, nearest) {
             (Status::HeldByObstacle | Status::InCollision, Some(NearestContact { contact, .. })) => {
                 let Contact { link, other, distance } = contact;

@@ -23,6 +23,7 @@ use crate::path::{PyPath, path_argument};
 use crate::pickling::{self, Reduced};
 use crate::python_calls;
 use crate::robot::PyRobot;
+use crate::start_gate::{Outside, plain};
 use crate::tips::{Asked, TaskArguments, TipErrors, ToleranceArgument, read_tolerance};
 use crate::trajectory::PyTrajectory;
 use crate::traversal::traversed;
@@ -36,7 +37,7 @@ pub struct PyTrackResult {
     columns: Columns,
     /// Errors by tip.
     tips: TipErrors,
-    /// Smallest distances from obstacles and between links (k,) (m); NaN without `obstacles=` and `self_collision=True`.
+    /// Smallest distances from obstacles and between links (k,) (m); NaN where nothing is checked.
     #[pyo3(get)]
     clearance: Py<PyArray1<f64>>,
     /// Velocity limits in force in each tick (k, n); NaN in row 0, inf for none.
@@ -105,6 +106,12 @@ impl PyTrackResult {
     #[getter]
     fn references<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.points(py, &self.core.reference, &self.core.tips.references)
+    }
+
+    /// Joints that began outside their position limits and were led inside, each (joint, value, limit) (rad, m).
+    #[getter]
+    fn start_outside(&self) -> Vec<Outside> {
+        plain(&self.core.start_outside)
     }
 
     /// Smallest margin between a joint speed and its limit (rad/s, m/s); inf without limits.
@@ -202,7 +209,8 @@ impl PyTrackResult {
 ///     task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
-///     limits: limits on the joint motion; None: the robot's.
+///     limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
 ///     position_tolerance: error band of positions (m); for several tips also a dict.
@@ -211,10 +219,13 @@ impl PyTrackResult {
 ///         robot's own links alone. Each command is certified together with the stop that follows it: the arm slides along, waits
 ///         or stops. None: nothing is checked.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
-///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
+///         several tips all of whose collision shapes are known.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
+///     start_slack: how far start may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
+///         inside within its limits, see `TrackResult.start_outside`. None: 5 degrees, 5 mm for joints that slide.
 ///     ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
 ///         that meets the moving path, after which the arm is on it. The tip is off the path until then.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
@@ -223,8 +234,8 @@ impl PyTrackResult {
 ///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, or a time step that is not positive.
-///     LimitError: a start outside its limits, or a negative limit.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
+///     LimitError: a start farther outside its limits than start_slack, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
 ///         region; position, acceleration or jerk limits that vary in time, among obstacles.
 ///
@@ -240,8 +251,9 @@ impl PyTrackResult {
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, progress=None)")]
+                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false,
+                    start_slack=None, progress=None),
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -261,6 +273,7 @@ pub fn track(
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ease: bool,
+    start_slack: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
     let arm = robot.get().core.clone();
@@ -278,7 +291,7 @@ pub fn track(
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
-    let read = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
+    let read = TrackArguments { rule, only, goals, surroundings, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };

@@ -26,6 +26,7 @@ use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
 use crate::robot::PyRobot;
+use crate::start_gate::{Outside, plain};
 use crate::tip_keys::TipKeys;
 use crate::tips::{Asked, TaskArguments, TipErrors, TipSettings, ToleranceArgument, read_tolerance};
 use crate::traversal::traversed;
@@ -43,7 +44,8 @@ use crate::units;
 ///     dt: time step (s).
 ///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
-///     limits: numbers and `Sinusoid`s; None: the robot's. Callables cannot be used: there is no end time up to which to
+///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
+///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
 ///     goals: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
@@ -54,6 +56,9 @@ use crate::units;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
+///     start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
+///         there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
+///         Rounding is taken off in any case.
 ///
 /// For example:
 ///
@@ -92,8 +97,9 @@ impl PyTracker {
     #[new]
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None)")]
+                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
+                        start_slack=None),
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -112,6 +118,7 @@ impl PyTracker {
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
         target_filter: Option<&Bound<'_, PyAny>>,
         timeout: Option<f64>,
+        start_slack: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
@@ -124,7 +131,7 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at };
+        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at, start_slack };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
@@ -202,6 +209,7 @@ impl PyTracker {
             }
             None => None,
         };
+        let outside = session.start_outside().to_vec();
         let core = if self.runs_solver {
             watched_with_interpreter(py, None, |watcher| session.advance(arrival, watcher).map_err(raise))?
         } else {
@@ -211,11 +219,11 @@ impl PyTracker {
             *self.keys() = keys;
         }
         let motion = [session.q().to_vec(), session.qd().to_vec()];
-        let (space, q) = (session.space().cloned(), session.q().to_vec());
+        let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
         let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
-        Ok(step.among(space, q).of_tips(tips).of_drifted_target(drift))
+        Ok(step.among(space, q).of_tips(tips).led_from(outside).of_locked(lock).of_drifted_target(drift))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
@@ -228,7 +236,7 @@ impl PyTracker {
         self.session().stop()
     }
 
-    /// Resets to q (n,) and t = 0, at rest or in motion.
+    /// Resets to q (n,) and t = 0, at rest or in motion. Like the start, q may be outside the position limits by `start_slack`.
     ///
     /// Args:
     ///     q: configuration (n,) (rad, m).
@@ -242,9 +250,15 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let q = joint_vector(&self.robot.get().core, "q", q)?;
-        let (qd, qdd) = (read("qd", qd)?, read("qdd", qdd)?);
+        let arm = &self.robot.get().core;
+        let (q, qd, qdd) = (joint_vector(arm, "q", q)?, read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
+    }
+
+    /// Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside.
+    #[getter]
+    fn start_outside(&self) -> Vec<Outside> {
+        plain(self.session().start_outside())
     }
 
     /// Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If

@@ -43,6 +43,13 @@ def retime(
     blend: Annotated[
         float | None, typer.Option(help="Polyline: distance from a corner at which its rounding starts, in rad.")
     ] = None,
+    tolerance: Annotated[
+        str | None,
+        typer.Option(
+            help="How far the motion may leave the path in each joint, in rad: one number, or one per joint. "
+            "Noise of a recording is smoothed inside it; default: exactly on the path."
+        ),
+    ] = None,
     gridpoints: Annotated[
         int | None, typer.Option(help="Points where the acceleration may change; chosen automatically by default.")
     ] = None,
@@ -69,6 +76,7 @@ def retime(
             blend=blend,
             gridpoints=gridpoints,
             joint_names=joints,
+            tolerance=limit("--tolerance", tolerance),
         )
         summary = _summarize(file, trajectory, limits, waypoints, time)
         if folder is not None:

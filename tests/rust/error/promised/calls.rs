@@ -30,8 +30,26 @@ pub fn calls() -> Vec<Row> {
         MapGrid::new(robot, &MapLayout { voxel, region, directions: 20, rolls: 4 }, &MapOptions::default())
     };
     let model_free = ModelFreeOptions { controller: Controller::Znnbas(Znnbas::default()), ..Default::default() };
-    let options = TrackOptions::default();
+    let options = TrackOptions { limits: jumping(&two()), ..TrackOptions::default() };
+    let still = [0.1, 0.2].repeat(9);
+    let calibrated = |robot: &Robot, qs: &[f64], positions: &[[f64; 3]], options: &CalibrationOptions| {
+        calibrate(robot, qs, &Measured::Positions(positions.to_vec()), options)
+    };
+    let plain = CalibrationOptions::default();
+    let silent = CalibrationOptions { sigma: Some(vec![[0.0; 2]; 9]), ..plain.clone() };
+    let nothing = CalibrationOptions { fit: vec![], ..plain.clone() };
+    let lens = |focal, centre| PinholeCamera { focal: [focal; 2], centre: [centre; 2] }.validate();
     promises! {
+        "calibrate" InvalidMeasurement: calibrated(&two(), &still, &[[0.0; 3]; 9], &plain), "all configurations are alike: move the arm between measurements, each joint over as much of its range as possible";
+        "calibrate" WrongLength: calibrated(&two(), &still, &[[0.0; 3]; 8], &plain), "measurements of robot 'planar2': expected 9, one for each configuration, got 8";
+        "calibrate" NotFinite: calibrated(&two(), &still, &[[NAN; 3]; 9], &plain), "measurements must be finite, but row 0, entry 0 is NaN";
+        "calibrate" OutOfRange: calibrated(&two(), &still, &[[0.0; 3]; 9], &silent), "standard deviation of a measurement must be positive and finite, got 0";
+        "calibrate" SeveralTips: calibrated(&arms(), &still, &[[0.0; 3]; 9], &plain), "calibration takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
+        "calibrate" Contradiction: calibrated(&two(), &still, &[[0.0; 3]; 9], &nothing), "nothing is to be fitted: name one or more of 'offsets', 'links', 'tool', 'base'";
+        "PinholeCamera::validate" OutOfRange: lens(0.0, 1.0), "focal length (pixels) must be positive and finite, got 0";
+        "PinholeCamera::validate" NotFinite: lens(1.0, NAN), "principal point must be finite, but entry 0 is NaN";
+        "Robot::urdf_with_geometry" Urdf: two().urdf_with_geometry("<robot"), "URDF line 1: not XML: the document does not have a root node";
+        "Robot::urdf_with_geometry" SeveralTips: arms().urdf_with_geometry(&two_arms()), "writing a URDF takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "solve_batch" InRow: batch(&[[1.0, 0.5, 0.0], [NAN; 3]]), "row 1: target must be finite, but coordinate x is NaN";
         "solve_all" Contradiction: solve_all(&two(), &position, &turns, &mut Unattended), "taking all whole turns makes 202566 configurations; at most 10000 are allowed: narrow the limits";
         "self_motion" Contradiction: self_motion(&two(), &position, &SelfMotionOptions::default(), &mut Unattended), "self_motion needs one joint more than the target: robot 'planar2' has 2 joints, and this target takes 2";

@@ -13,6 +13,11 @@ pub fn paths_and_trajectories() -> Vec<Row> {
             &options,
         )
     };
+    let within = |tolerance: &[f64], limits: Limits| {
+        let path = JointPath::spline(names(1), &[0.0, 1.0], None, SplineEnds::Natural).unwrap();
+        let limits = ConstantLimits::new(&limits, "time_optimal").unwrap();
+        time_optimal_within(&path, tolerance, &limits, &TimingOptions::default())
+    };
     let motion = || Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0], None, None).unwrap();
     promises! {
         "Circle::new" OutOfRange: Circle::new(plane(), 0.0, 1.0), "diameter must be positive and finite, got 0";
@@ -57,10 +62,13 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "JointPath::polyline" OutOfRange: JointPath::polyline(names(1), &[0.0, 1.0], -1.0), "blend must be zero or more and finite, got -1";
         "JointPath::spline" WrongLength: spline(&[0.0, 0.0, 1.0], None), "waypoints: expected rows of 2 joints, got 3";
         "JointPath::spline" NotFinite: spline(&[0.0, 0.0, 1.0, NAN], None), "waypoints must be finite, but joint 'joint_2' of row 1 is NaN";
-        "JointPath::spline" InvalidPath: spline(&[0.0, 0.0, 0.0, 0.0], None), "path: waypoint 1 is the same as waypoint 0: leave one of them out";
+        "JointPath::spline" InvalidPath: spline(&[0.0, 0.0, 0.0, 0.0], None), "path: all waypoints are the same: give at least two that differ";
         "JointPath::spline" NotIncreasing: spline(&[0.0, 0.0, 1.0, 1.0, 2.0, 2.0], Some(&[0.0, 2.0, 1.0])), "knots must increase, but row 2 has 1 after 2";
         "time_optimal" Infeasible: timed(rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap(), TimingOptions::default()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "time_optimal" OutOfRange: timed(rated(), TimingOptions { gridpoints: Some(0), ..Default::default() }), "gridpoints must be from 3 to 200000, got 0";
+        "time_optimal_within" WrongLength: within(&[0.1; 2], rated()), "tolerance: expected 1 (one per joint), got 2";
+        "time_optimal_within" OutOfRange: within(&[-0.1], rated()), "tolerance of joint 'joint_1' must be zero or more and finite, got -0.1";
+        "time_optimal_within" Infeasible: within(&[0.1], rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "ConstantLimits::new" UnsupportedLimit: ConstantLimits::new(&varying(Field::Acceleration), "time_optimal"), "time_optimal cannot honour time-varying acceleration limits: when a point of the path is passed is what it looks for; give numbers";
         "ConstantLimits::new" NegativeLimit: ConstantLimits::new(&constant(Field::Acceleration, -1.0), "time_optimal"), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
         "ConstantLimits::new" EmptyRange: ConstantLimits::new(&crossed(), "time_optimal"), "joint '0': lower limit 1 is above upper limit 0";
@@ -90,9 +98,9 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "state_to_state" WrongLength: state_to_state(&state(&[0.0; 2]), &state(&[1.0]), &rated()), "q1: expected 2 joints, got 1";
         "state_to_state" NotFinite: state_to_state(&state(&[0.0, NAN]), &state(&[1.0; 2]), &rated()), "q0 must be finite, but joint '1' is NaN";
         "state_to_state" UnsupportedLimit: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &varying(Field::Velocity)), "state_to_state cannot honour time-varying velocity limits: give numbers";
-        "state_to_state" OutOfRange: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &constant(Field::Velocity, 0.0)), "velocity limit of joint '0' must be positive, got 0";
-        "state_to_state" NoPace: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &Limits::none_for(2)), "joint '0' has neither a velocity nor an acceleration limit, so that nothing sets its pace: give a velocity limit";
-        "state_to_state" OutsideLimits: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "q1: joint '0' at 1 is outside its limits [-inf, 0.5]";
+        "state_to_state" OutOfRange: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &constant(Field::Velocity, 0.0)), "velocity limit of joints '0', '1' must be positive, got 0";
+        "state_to_state" NoPace: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &Limits::none_for(2)), "joints '0', '1' have neither a velocity nor an acceleration limit, so that nothing sets their pace: give a velocity limit";
+        "state_to_state" OutsideLimits: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "q1: joint '0' at 1 is outside its limits [-inf, 0.5] by 0.5000 rad: moving it to the limit changes the pose";
         "state_to_state" Infeasible: state_to_state(&moving(&[0.4; 2], &[1.0; 2]), &state(&[0.2; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: joint '0' would get to 0.6500, beyond its upper limit 0.5000: begin or end it slower, or farther from its limit";
         "state_to_state" InvalidTrajectory: state_to_state(&state(&[0.0; 2]), &state(&[0.0; 2]), &rated()), "trajectory: q0 and q1, with their velocities and accelerations, are the same state: nothing moves";
         "stop" InvalidTrajectory: stop(&state(&[0.0; 2]), &rated()), "trajectory: the arm is at rest: nothing has to stop";

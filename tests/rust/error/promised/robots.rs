@@ -57,6 +57,13 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "manipulability_all" SeveralTips: manipulability_all(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "Scene::new" NoCapsules: Scene::new(&panda, vec![ball(2.0)]), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";
         "Scene::new" InvalidObstacle: Scene::new(&solid(), Obstacles::from_iter([Obstacle::new(ball(2.0), vec!["hnd".into()])])), "touch of obstacle 0 (Sphere): robot 'planar2' has no link 'hnd'; links with bodies: link_1, link_2";
+        "Scene::new" Contradiction: Scene::new(&solid(), Obstacles::beside_carried(vec![], vec![["link_2".into(), "part".into()]])), "in the scene, link 'link_2' carries 'part', which robot 'planar2' does not: use a robot that carries it";
+        "Obstacle::without_robot" NoCapsules: seen().without_robot(&panda, &[0.0; 7], 0.02), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";
+        "Obstacle::without_robot" WrongLength: seen().without_robot(&solid(), &[0.0], 0.02), "joint angles of robot 'planar2': expected 2 joints, got 1";
+        "Obstacle::without_robot" NotFinite: seen().without_robot(&solid(), &[NAN; 2], 0.02), "joint angles must be finite, but joint 'joint_1' is NaN";
+        "Obstacle::without_robot" OutOfRange: seen().without_robot(&solid(), &[0.0; 2], -0.02), "padding must be zero or more and finite, got -0.02";
+        "Obstacle::without_robot" InvalidObstacle: Obstacle::from(ball(3.0)).without_robot(&solid(), &[0.0; 2], 0.02), "a Sphere has no points of its own: expected a PointCloud or a Grid";
+        "Obstacle::without_robot" Interrupted: interruptible(|| false, || seen().without_robot(&solid(), &[0.0; 2], 0.02)), "interrupted before the end";
         "Scene::nearest" WrongLength: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[0.0]), "joint angles of robot 'planar2': expected 2 joints, got 1";
         "Scene::nearest" NotFinite: Scene::new(&solid(), vec![ball(3.0)]).unwrap().nearest(&[NAN; 2]), "joint angles must be finite, but joint 'joint_1' is NaN";
         "Scene::which_are_clear" OutOfRange: Scene::new(&solid(), vec![ball(3.0)]).unwrap().which_are_clear(&[0.0; 2], -1.0), "margin must be zero or more and finite, got -1";
@@ -76,15 +83,22 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Shape::mesh" InvalidObstacle: Shape::mesh(vec![[0.0; 3]; 3], vec![[0, 1, 3]]), "face 0 of the mesh names vertex 3, but it has 3 (from 0)";
         "Shape::point_cloud" NotFinite: Shape::point_cloud(vec![[NAN; 3]], 0.1), "points of the point cloud must be finite, but coordinate x of point 0 is NaN";
         "Shape::point_cloud" OutOfRange: Shape::point_cloud(vec![[0.0; 3]], -0.1), "radius of the point cloud must be zero or more and finite, got -0.1";
-        "Shape::point_cloud" InvalidObstacle: Shape::point_cloud(vec![], 0.1), "a point cloud needs at least one point, got none";
         "Robot::from_dh" WrongLength: Robot::from_dh("arm", &DhTable { d: vec![], ..table() }), "d in the DH table of robot 'arm': expected 1 entries, as in a, got 0";
         "Robot::from_dh" NotFinite: Robot::from_dh("arm", &DhTable { alpha: vec![NAN], ..table() }), "alpha in the DH table of robot 'arm' must be finite, but entry 0 is NaN";
         "Robot::with_base" NotFinite: panda.with_base(lost()), "base must be finite, but entry (0, 3) is NaN";
         "Robot::with_tool" NotFinite: panda.with_tool(lost()), "tool must be finite, but entry (0, 3) is NaN";
         "Robot::with_capsules_along_links" InvalidRobot: nameless().with_capsules_along_links(0.1), "robot 'nameless': no link is named between moving elements 1 and 2, so that none can carry a capsule: name one there";
         "ChainBuilder::build" NotFinite: adrift(), "fixed transform must be finite, but entry (0, 3) is NaN";
+        "Robot::wrap" WrongLength: panda.wrap(&[0.0], None), "q of robot 'panda': expected 7 joints, got 1";
+        "Robot::wrap" NotFinite: panda.wrap(&[NAN; 7], None), "q must be finite, but joint 'panda_joint1' is NaN";
+        "Robot::wrap" OutsideLimits: panda.wrap(&[0.0; 7], None), "q: joint 'panda_joint4' at 0 is outside its limits [-3.0718, -0.0698] by 0.06980 rad: no whole turn brings it inside, the nearest is 0.06980 rad beyond; moving it to the limit changes the pose";
+        "Robot::wrap_all" WrongLength: panda.wrap_all(&[0.0; 8], None), "joint angles of robot 'panda': expected rows of 7 joints, got 8";
+        "Robot::order_of" UnknownJoint: panda.order_of(&["panda_joint".to_owned()], false), "robot 'panda' has no joint 'panda_joint' in q (did you mean 'panda_joint1'?); its joints: panda_joint1, panda_joint2, panda_joint3, panda_joint4, panda_joint5, panda_joint6, panda_joint7; ignoring extra names leaves out values of other joints";
+        "Robot::order_of" Contradiction: Robot::planar(&[1.0]).unwrap().order_of(&[], false), "names: joint 'joint_1' of robot 'planar1' missing; given: ";
+        "Robot::q_from" WrongLength: Robot::planar(&[1.0]).unwrap().q_from(&["joint_1".to_owned(), "x".to_owned()], &[0.0; 3], false, true), "values: expected 2 numbers, one per name, got 3";
+        "Robot::q_from" NotFinite: Robot::planar(&[1.0]).unwrap().q_from(&["joint_1".to_owned()], &[NAN], false, false), "values must be finite, but joint 'joint_1' is NaN";
         "Robot::with_held" NotFinite: held().with_held([("side", NAN)]), "held joints must be finite, but joint 'side' is NaN";
-        "Robot::with_held" OutsideLimits: held().with_held([("side", 2.0)]), "hold: joint 'side' at 2 is outside its limits [-1, 1]";
+        "Robot::with_held" OutsideLimits: held().with_held([("side", 2.0)]), "hold: joint 'side' at 2 is outside its limits [-1, 1] by 1.000 rad: move it inside";
         "Robot::with_mobile_base" OutOfRange: panda.with_mobile_base(MobileBase::Planar, &on_wheels(f64::INFINITY)), "lower limit of joint 'base_x' must be finite: configurations are drawn from the range, got -inf";
         "Robot::with_mobile_base" InvalidRobot: panda.with_mobile_base(MobileBase::Planar, &on_wheels(1.0)).unwrap().with_mobile_base(MobileBase::Planar, &on_wheels(1.0)), "robot 'panda': two joints are named 'base_x'";
         "Mesh::cover" OutOfRange: huge_cover(), "radius of the capsule must be positive and finite, got inf";
@@ -100,7 +114,6 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Shape::grid" NotFinite: Shape::grid([NAN; 3], 0.1, [1; 3], vec![true]), "origin must be finite, but coordinate x is NaN";
         "Shape::grid" OutOfRange: Shape::grid([0.0; 3], 0.0, [1; 3], vec![true]), "voxel of the grid must be positive and finite, got 0";
         "Shape::grid" WrongLength: Shape::grid([0.0; 3], 0.1, [1; 3], vec![]), "occupied voxels: expected 1 x 1 x 1 voxels, got 0";
-        "Shape::grid" InvalidObstacle: Shape::grid([0.0; 3], 0.1, [1; 3], vec![false]), "a grid needs at least one occupied voxel, got none";
         "to_bytes" Corrupt: stored::to_bytes("thing", &Unwritable), "cannot restore thing: Serde Serialization Error";
         "from_bytes" Corrupt: stored::from_bytes::<u8>("thing", &[]), "cannot restore thing: no bytes";
     }

@@ -91,7 +91,7 @@ pub fn along(points: &[[f64; 3]]) -> Result<Plan> {
 }
 
 pub fn session() -> Session {
-    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions::default()).unwrap()
+    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { limits: jumping(&two()), ..Default::default() }).unwrap()
 }
 
 pub fn eased_session() -> Session {
@@ -123,6 +123,11 @@ pub fn solid() -> Robot {
 
 pub fn ball(x: f64) -> Shape {
     Shape::sphere([x, 0.0, 0.0], 0.1).unwrap()
+}
+
+/// A cloud of one point.
+pub fn seen() -> Obstacle {
+    Shape::point_cloud(vec![[3.0, 0.0, 0.0]], 0.1).unwrap().into()
 }
 
 pub fn line() -> StraightLine {
@@ -253,7 +258,13 @@ pub fn posed() -> ControlSession {
 
 pub fn turning() -> Session {
     let task = Task::new(TaskKind::Orientation, None, None, None).unwrap();
-    Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { task: Some(task), ..TrackOptions::default() }).unwrap()
+    Session::new(
+        &two(),
+        &[0.5, 0.5],
+        0.1,
+        &TrackOptions { task: Some(task), limits: jumping(&two()), ..TrackOptions::default() },
+    )
+    .unwrap()
 }
 
 pub fn stamped(stamp: f64) -> Arrival {

@@ -13,7 +13,12 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Limits::replace" NotFinite: none().replace(Field::Velocity, vec![Profile::Sinusoid(nan)]), "velocity limit of joint '0' must be finite, but mean is NaN";
         "Limits::validate" NegativeLimit: constant(Field::Velocity, -1.0).validate(0.1, 1), "velocity limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
         "Limits::validate" EmptyRange: crossed().validate(0.1, 1), "joint '0': lower limit 1 is above upper limit 0";
-        "Limits::require_inside" OutsideLimits: constant(Field::Upper, 1.0).require_inside("start", 0.0, &[0.0, 2.0]), "start: joint '1' at 2 is outside its limits [-inf, 1]";
+        "Limits::admit_start" OutsideLimits: constant(Field::Upper, 1.0).admit_start(None, "start", &[0.0, 1.5], &StartSlack::default()), "start: joint '1' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose; start slack takes a start farther out";
+        "Limits::admit_start" WrongLength: constant(Field::Upper, 1.0).admit_start(None, "start", &[0.0; 2], &StartSlack::new(vec![0.1; 3]).unwrap()), "start slack: expected one number, or 2 (one per joint), got 3";
+        "Limits::admit" OutsideLimits: constant(Field::Upper, 1.0).admit(None, "end", &[0.0, 2.0]), "end: joint '1' at 2 is outside its limits [-inf, 1] by 1.000 rad: move it inside";
+        "Limits::turn_near" UnsupportedLimit: varying(Field::Lower).turn_near(&robot("panda"), &[0.0; 7], &mut [0.0; 7]), "the short way round cannot honour time-varying lower limits: give numbers";
+        "StartSlack::new" OutOfRange: StartSlack::new(vec![0.1, NAN]), "start slack must be zero or more, got NaN";
+        "StartSlack::new" WrongLength: StartSlack::new(vec![]), "start slack: expected one number, or one per joint, got 0";
         "Bounds::new" WrongLength: Bounds::new(&[0.0], &[1.0, 1.0]), "upper: expected 1 entries as in lower, got 2";
         "Bounds::new" OutOfRange: Bounds::new(&[1.0], &[0.0]), "lower[0] must be at most upper[0] = 0, got 1";
         "Region::new" OutOfRange: Region::new([1.0; 3], [0.0; 3]), "lower x of region must be below its upper one, 0, got 1";

@@ -239,7 +239,7 @@ impl ClearPlanner<'_> {
     /// Returns the plan that penetrates least, where there is no clear one.
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { fractions: &self.fractions, postures: &self.postures };
-        let obstruction = layers.obstruction(&self.passage, space, dead_end);
+        let (obstruction, own_points) = layers.obstruction(&self.passage, space, dead_end);
         let missing = |q: &Point| (space.margin() - space.clearance(q).distance).max(0.0);
         let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
@@ -259,7 +259,7 @@ impl ClearPlanner<'_> {
         let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
         let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
         let plan = self.finished(motion, None, Some(Status::InCollision))?;
-        Ok(Plan { obstruction: Some(obstruction), ..plan })
+        Ok(Plan { obstruction: Some(obstruction), own_points, ..plan })
     }
 
     /// The error where no sequence follows the path, clear or not.

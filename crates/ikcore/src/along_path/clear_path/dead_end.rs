@@ -4,7 +4,7 @@ use super::passage::Passage;
 use super::postures::are_all;
 use super::sequence::Unreached;
 use crate::objective::Point;
-use crate::obstacle::{Blocked, ClearSpace, Contact, NearestContact};
+use crate::obstacle::{Blocked, ClearSpace, Contact, Measured, NearestContact};
 
 /// Postures at the points of a path, clear or not.
 pub(super) struct Layers<'a> {
@@ -14,18 +14,24 @@ pub(super) struct Layers<'a> {
 
 impl Layers<'_> {
     /// Names the obstruction of a path: the first point without a clear posture, or else the point that no clear motion
-    /// reaches.
-    pub fn obstruction(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, dead_end: Unreached) -> String {
+    /// reaches. Also returns what was measured of the robot itself, if that is the obstruction.
+    pub fn obstruction(
+        &self,
+        passage: &Passage<'_>,
+        space: &ClearSpace<'_>,
+        dead_end: Unreached,
+    ) -> (String, Option<Measured>) {
         let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.fractions[*i], q));
         match (0..self.fractions.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
             None => {
                 let place = passage.problem.tip_path.point_in_words(self.fractions[dead_end.0]);
                 let count = self.clear(passage, dead_end.0);
-                format!(
+                let what = format!(
                     "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
                     self.postures[dead_end.0].len()
-                )
+                );
+                (what, None)
             }
         }
     }
@@ -35,15 +41,22 @@ impl Layers<'_> {
     }
 
     /// Names the obstruction at a point without a clear posture.
-    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> String {
+    fn blocked(&self, passage: &Passage<'_>, space: &ClearSpace<'_>, layer: usize) -> (String, Option<Measured>) {
         let tip_path = passage.problem.tip_path;
         let (fraction, postures) = (self.fractions[layer], &self.postures[layer]);
         let said = |contact: &Contact| contact.in_words(space.margin());
         let hands = if tip_path.fixes_pose() { vec![passage.problem.robot.frame_of_tip(0)] } else { vec![] };
         let hopeless = postures.first().and_then(|q| space.blocked_at(q, &hands));
+        let own_points = match &hopeless {
+            Some(Blocked::Base(contact)) => contact.measured(),
+            _ => None,
+        };
         let what = match hopeless {
             Some(Blocked::Hand(contact)) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(&contact))
+            }
+            Some(Blocked::Base(contact)) if own_points.is_some() => {
+                format!("{}, and no joint moves it", said(&contact))
             }
             Some(Blocked::Base(contact)) => {
                 format!("{}, and no joint moves it; {}", said(&contact), contact.remedy())
@@ -60,7 +73,7 @@ impl Layers<'_> {
                 None => "no posture was found".into(),
             },
         };
-        format!("{}: {what}", tip_path.point_in_words(fraction))
+        (format!("{}: {what}", tip_path.point_in_words(fraction)), own_points)
     }
 }
 

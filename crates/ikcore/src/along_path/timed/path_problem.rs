@@ -27,7 +27,7 @@ pub(crate) struct PathProblem<'a> {
     pub limits: ConstantLimits,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
     pub accuracy: f64,
-    /// The options of the call.
+    /// The options of the call, with a start that the gate has taken.
     pub options: &'a AlongPathOptions,
     /// Stopwatch of the call.
     pub stopwatch: Stopwatch,
@@ -54,7 +54,7 @@ impl<'a> PathProblem<'a> {
         limits.require_accelerations(METHOD)?;
         let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
         require_positive("accuracy", accuracy)?;
-        if let Some(q) = options.start_within(robot, &limits)? {
+        if let Some(q) = &options.start {
             require_on_path(robot, q, tip_path, accuracy)?;
         }
         let robot = limits.applied_to(robot)?;

@@ -128,6 +128,9 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
             (Some(Blocked::Hand(contact)), _) => {
                 format!("{} whatever the arm does: the hand itself is in the way", said(contact))
             }
+            (Some(Blocked::Base(contact)), _) if contact.measured().is_some() => {
+                format!("{} whatever the arm does", said(contact))
+            }
             (Some(Blocked::Base(contact)), _) => {
                 format!("{} whatever the arm does; {}", said(contact), contact.remedy())
             }

@@ -6,7 +6,7 @@ use crate::ik::first_branch::by_closed_form;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::solve_options::Prefer;
 use crate::objective::Point;
-use crate::obstacle::ClearSpace;
+use crate::obstacle::{Blocked, ClearSpace, Contact, Measured};
 use crate::solver::Status;
 use crate::task::{Goal, Goals};
 
@@ -27,6 +27,7 @@ pub(in crate::ik) fn clear_solution<'p>(
         (_, start) => search.first(start).map(|q| search.improved(q, start)),
     };
     let mut solution = found.map_or_else(|missed| *missed, |q| attempt.solution(Status::Solved, q));
+    solution.own_points = own_points(&solution, space, start);
     if solution.nearest.is_none() && !context.options().nearest_later {
         solution.nearest = Some(Box::new(Nearest::at(space, &solution.q)));
     }
@@ -41,7 +42,24 @@ pub(in crate::ik) fn made_clear<'p>(
     solution: Solution,
 ) -> Solution {
     let checked = ClearSearch::new(attempt, space).checked(solution);
-    checked.map_or_else(|blocked| *blocked, |q| attempt.solution(Status::Solved, q))
+    let mut solution = checked.map_or_else(|blocked| *blocked, |q| attempt.solution(Status::Solved, q));
+    solution.own_points = own_points(&solution, space, None);
+    solution
+}
+
+/// Returns what was measured of the robot itself, if a solution is in collision with it: the robot is in it at its `start`, or with
+/// a body that no joint moves.
+fn own_points(solution: &Solution, space: &ClearSpace<'_>, start: Option<&[f64]>) -> Option<Measured> {
+    if solution.status != Status::InCollision {
+        return None;
+    }
+    let measured = |contact: &Contact| contact.measured().filter(|_| contact.distance < space.margin());
+    if let Some(Blocked::Base(contact)) = space.blocked_anywhere(&solution.q) {
+        return measured(&contact);
+    }
+    let contact = |q: &[f64]| space.clearance(q).nearest.map(|nearest| nearest.contact);
+    let here = measured(&contact(&solution.q)?)?;
+    start.and_then(contact).as_ref().and_then(measured).map(|_| here)
 }
 
 impl ClearSearch<'_, '_, '_> {

@@ -64,6 +64,7 @@ fn add_joints(
     let mut index_in_q = HashMap::new();
     for &joint in moving {
         let master = couplings.of(joint)?.master;
+        step::require_limit(document, master)?;
         let stands_here = master == joint || !moving.contains(&master);
         if stands_here && !index_in_q.contains_key(&master) {
             index_in_q.insert(master, chain.add_joint(step::described(document, master)?));

@@ -39,6 +39,10 @@ pub(super) struct UrdfJoint {
     pub(super) range: (f64, f64),
     /// Velocity limit (rad/s, m/s).
     pub(super) velocity: f64,
+    /// Rated acceleration and jerk (rad/s^2, m/s^2; rad/s^3, m/s^3): of URDF 1.2, infinite where they are missing.
+    pub(super) rated: [f64; 2],
+    /// Whether the joint has an element `limit`.
+    pub(super) has_limit: bool,
     pub(super) mimic: Option<Mimic>,
 }
 
@@ -153,9 +157,24 @@ fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
             (lower, upper) => (lower.unwrap_or(0.0), upper.unwrap_or(0.0)),
         },
         velocity: number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY),
+        rated: rated(joint, &owner)?,
+        has_limit: xml::children(joint, "limit").next().is_some(),
         mimic: mimic(joint, &owner)?,
         name: name.into(),
     })
+}
+
+/// Returns the rated acceleration and jerk. A motion reversed is as good, so that the smaller of acceleration and deceleration holds
+/// for both.
+fn rated(joint: Node, owner: &str) -> Result<[f64; 2]> {
+    let rate = |attribute: &str| match number(joint, "limit", attribute, owner)? {
+        Some(value) if value < 0.0 => {
+            let problem = format!("limit {attribute} of {owner} is {value}: a limit cannot be negative");
+            Err(xml::error_at(joint, problem))
+        }
+        value => Ok(value.unwrap_or(f64::INFINITY)),
+    };
+    Ok([rate("acceleration")?.min(rate("deceleration")?), rate("jerk")?])
 }
 
 fn joint_kind(joint: Node, owner: &str) -> Result<UrdfKind> {

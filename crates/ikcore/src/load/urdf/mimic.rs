@@ -120,6 +120,12 @@ pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Resu
     }
     master.lower = master.lower.max(lower);
     master.upper = master.upper.min(upper);
-    master.velocity = master.velocity.min(follower.velocity / scale.abs());
+    for (own, rate) in [
+        (&mut master.velocity, follower.velocity),
+        (&mut master.rated_acceleration, follower.rated_acceleration),
+        (&mut master.rated_jerk, follower.rated_jerk),
+    ] {
+        *own = own.min(rate / scale.abs());
+    }
     Ok(())
 }

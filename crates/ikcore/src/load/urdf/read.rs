@@ -48,9 +48,11 @@ impl Robot {
     /// [held](Robot::held_joints) at zero or at the limit nearest to zero; mimic joints beside the chain follow their
     /// masters. Floating, planar and spherical joints beside the chain stay in their origin.
     ///
-    /// A revolute or prismatic joint with neither `lower` nor `upper` is unlimited (URDF's default of zero for both would
-    /// lock it); if one is given, the other is zero, as URDF specifies. Without `velocity` the speed is unlimited; an
-    /// explicit zero locks the joint. Soft limits (`<safety_controller>`) are ignored.
+    /// A revolute or prismatic joint of the chain needs a `<limit>`, as URDF specifies. With neither `lower` nor `upper` it is
+    /// unlimited (URDF's default of zero for both would lock it), a revolute one continuous; if one is given, the other is zero,
+    /// as URDF specifies. Without `velocity` the speed is unlimited; an explicit zero locks the joint. `acceleration`,
+    /// `deceleration` and `jerk` of URDF 1.2 are rated limits ([`Limits::rated`](crate::limits::Limits::rated)); of acceleration
+    /// and deceleration the smaller one counts. Soft limits (`<safety_controller>`) are ignored.
     ///
     /// Collision shapes of all links become enclosing capsules ([`Robot::bodies`]): exact for spheres, with protruding caps
     /// for cylinders and boxes. Meshes are read only with [`CollisionShapes::Fit`] or [`CollisionShapes::Hulls`];
@@ -121,7 +123,7 @@ pub(super) fn read(path: &str) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| not_utf8(&error))
 }
 
-fn read_urdf(path: &str) -> Result<String> {
+pub(super) fn read_urdf(path: &str) -> Result<String> {
     let text = read(path)?;
     if let Some(stem) = path.strip_suffix(".xacro") {
         let stem = stem.strip_suffix(".urdf").unwrap_or(stem);

@@ -37,16 +37,36 @@ pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Driven
 pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
     let joint = &document.joints[index];
     let kind = kind(document, index)?;
-    let described = Joint::new(&joint.name, kind).with_velocity(joint.velocity);
+    let [rated_acceleration, rated_jerk] = joint.rated;
+    let described =
+        Joint { rated_acceleration, rated_jerk, ..Joint::new(&joint.name, kind).with_velocity(joint.velocity) };
     match kind {
         JointKind::Continuous => Ok(described),
         _ => Ok(described.with_range(joint.range.0, joint.range.1)),
     }
 }
 
+/// Checks that an independent revolute or prismatic joint has an element `limit`, as URDF requires. Followers have the limits of their
+/// masters.
+///
+/// # Errors
+/// [`Error::Urdf`](crate::Error::Urdf) with the line of the joint.
+pub(super) fn require_limit(document: &Document, index: usize) -> Result<()> {
+    let joint = &document.joints[index];
+    let (kind, remedy) = match joint.kind {
+        _ if joint.has_limit => return Ok(()),
+        UrdfKind::Revolute => ("revolute", "give lower and upper, or write type=\"continuous\""),
+        UrdfKind::Prismatic => ("prismatic", "give lower and upper, perhaps -inf and inf"),
+        _ => return Ok(()),
+    };
+    let problem = format!("joint '{}' is {kind} and has no <limit>, which URDF requires: {remedy}", joint.name);
+    Err(document.error_at(index, problem))
+}
+
 pub(super) fn kind(document: &Document, index: usize) -> Result<JointKind> {
     let joint = &document.joints[index];
     match joint.kind {
+        UrdfKind::Revolute if joint.range == (f64::NEG_INFINITY, f64::INFINITY) => Ok(JointKind::Continuous),
         UrdfKind::Revolute => Ok(JointKind::Revolute),
         UrdfKind::Continuous => Ok(JointKind::Continuous),
         UrdfKind::Prismatic => Ok(JointKind::Prismatic),

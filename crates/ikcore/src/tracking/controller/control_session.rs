@@ -4,7 +4,7 @@
 use super::control_tick::{ControlTick, RunningController, TickProgress};
 use super::controller_choice::Controller;
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::limits::{Field, LimitAt, Limits, TickBox};
+use crate::limits::{AdmittedStart, Field, JointOutside, LimitAt, Limits, StartSlack, TickBox};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 use crate::rng::{self, LazyRng};
@@ -22,6 +22,7 @@ use crate::tracking::tip_pose::TipPose;
 pub struct ControlSession {
     running: Box<dyn RunningController>,
     limits: Limits,
+    start_outside: Vec<JointOutside>,
     tolerance: Tolerance,
     dt: f64,
     ticks: usize,
@@ -79,11 +80,13 @@ impl ControlSession {
         limits.validate(dt, 0)?;
         let remedy = "a controller keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track_model_free", remedy)?;
-        limits.require_inside("start", 0.0, start)?;
+        let AdmittedStart { q, outside } = limits.admit_start(None, "start", start, &StartSlack::default())?;
+        let start = &q[..];
         Ok(Self {
             running: controller.start(start, dt, tolerance),
             tick_box: TickBox::around(start, &limits),
             limits,
+            start_outside: outside,
             tolerance,
             dt,
             ticks: 0,
@@ -116,6 +119,11 @@ impl ControlSession {
     /// Time step (s).
     pub fn dt(&self) -> f64 {
         self.dt
+    }
+
+    /// Joints that began outside their position limits.
+    pub fn start_outside(&self) -> &[JointOutside] {
+        &self.start_outside
     }
 
     /// Limits in force.
@@ -224,7 +232,7 @@ impl ControlSession {
 
     /// Configuration and box of the last tick.
     pub(in crate::tracking) fn accepted(&self) -> Accepted<'_> {
-        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: f64::NAN }
+        Accepted { q: &self.q, tick_box: &self.tick_box, clearance: f64::NAN, measured: None }
     }
 
     /// Returns the largest excess (rad, m) of the last command over a limit, its joint and the joint's command; `None` without
@@ -237,7 +245,11 @@ impl ControlSession {
         }
         let excesses = sent.iter().zip(&self.q).enumerate().map(|(j, (sent, q))| {
             let too_far = (sent - q).abs() - velocity[j] * self.dt;
-            (too_far.max(floor[j] - sent).max(sent - ceiling[j]), j, *sent)
+            // A joint that began outside is led inside.
+            let led = if self.start_outside.is_empty() { None } else { Some(*q) };
+            let (floor, ceiling) =
+                (led.map_or(floor[j], |q| floor[j].min(q)), led.map_or(ceiling[j], |q| ceiling[j].max(q)));
+            (too_far.max(floor - sent).max(sent - ceiling), j, *sent)
         });
         excesses.max_by(|a, b| a.0.total_cmp(&b.0))
     }

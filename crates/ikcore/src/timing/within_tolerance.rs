@@ -1,0 +1,72 @@
+//! The fastest motion that may leave its path by a tolerance.
+//!
+//! Smooth paths in tubes of the tolerance, and of narrower ones, compete with the path itself. All tolerances share the
+//! widths of these tubes, so that a wider one never takes longer.
+
+use super::constant_limits::ConstantLimits;
+use super::joint_path::JointPath;
+use super::time_optimal::{TimingOptions, time, time_optimal};
+use super::tube::Tube;
+use crate::error::{Error, Result};
+use crate::trajectory::Trajectory;
+
+/// Widths of tubes are powers of this number.
+const WIDTH_RATIO: f64 = std::f64::consts::SQRT_2;
+/// Number of widths tried, which ends at 1/1000 of the tolerance.
+const WIDTHS: i32 = 21;
+
+/// Returns a fast motion within `limits` that stays within `tolerance` (rad, m; one number per joint) of `path`, at the
+/// same path parameter, from its start to its end. Zero tolerances: the motion is on the path.
+///
+/// # Errors
+/// As [`time_optimal`] if nothing faster is near; [`Error::WrongLength`], [`Error::OutOfRange`] for `tolerance`.
+pub fn time_optimal_within(
+    path: &JointPath,
+    tolerance: &[f64],
+    limits: &ConstantLimits,
+    options: &TimingOptions,
+) -> Result<Trajectory> {
+    check(path, tolerance)?;
+    let mut best = time_optimal(path, limits, options);
+    if matches!(best, Err(Error::Interrupted)) || tolerance.iter().any(|tolerance| *tolerance == 0.0) {
+        return best;
+    }
+    let tube = Tube::new(path, limits);
+    let widest = tolerance.iter().map(|tolerance| WIDTH_RATIO.powf(tolerance.log(WIDTH_RATIO).floor()));
+    let (widest, mut pieces) = (widest.collect::<Vec<f64>>(), 1);
+    for width in 0..WIDTHS {
+        let tolerance: Vec<f64> = widest.iter().map(|widest| widest * WIDTH_RATIO.powi(-width)).collect();
+        let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else {
+            if width == 0 || pieces > 1 {
+                break;
+            } else {
+                continue;
+            };
+        };
+        pieces = needed;
+        if limits.require_for(&smooth).is_err() {
+            continue;
+        }
+        if let Ok(motion) = time(&smooth, limits, options)
+            && best.as_ref().map_or(true, |best| motion.duration() < best.duration())
+        {
+            best = Ok(motion);
+        }
+    }
+    best
+}
+
+fn check(path: &JointPath, tolerance: &[f64]) -> Result<()> {
+    let joints = path.joints();
+    if tolerance.len() != joints.len() {
+        let expected = format!("{} (one per joint)", joints.len());
+        return Err(Error::WrongLength { what: "tolerance".into(), expected, got: tolerance.len() });
+    }
+    match tolerance.iter().position(|tolerance| !(*tolerance >= 0.0 && tolerance.is_finite())) {
+        None => Ok(()),
+        Some(joint) => {
+            let what = format!("tolerance of joint '{}'", joints[joint]);
+            Err(Error::out_of_range(what, "zero or more and finite", tolerance[joint]))
+        }
+    }
+}

@@ -1,0 +1,227 @@
+"""Equality constraints of a MuJoCo model: linear ones are followed, and MuJoCo says which of the others are kept."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._core import Robot
+
+_CLOSED = 1e-4
+"""Residual (m, rad) up to which an equality counts as kept: the rounding of numbers in files."""
+_CONFIGURATIONS = 8
+
+
+class Drive(NamedTuple):
+    """Position of a joint: scale times the position of another joint plus offset, or offset alone without one."""
+
+    master: int | None
+    scale: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Open:
+    """An equality that a robot does not keep: its description, the joints it couples, and its residual (m, rad)."""
+
+    described: str
+    joints: set[int]
+    residual: float
+
+
+class Equalities:
+    """The active equality constraints of a model, and the joints that linear ones drive."""
+
+    def __init__(self, mujoco: Any, model: Any, joints: Sequence[str]) -> None:
+        """Solves the linear equalities; `joints` are the names of all joints."""
+        self.mujoco, self.model, self.joints = mujoco, model, joints
+        off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+        self.active = [] if model.opt.disableflags & off else [int(i) for i in np.flatnonzero(model.eq_active0)]
+        self.drives: dict[int, Drive] = {}
+        self._solve([equation for equality in self.active for equation in self._linear(equality)])
+
+    def lock(self, joint: int) -> float | None:
+        """Returns the position (rad, m) at which a joint is locked; None for a joint that moves."""
+        drive = self.drives.get(joint)
+        return drive.offset if drive and drive.master is None else None
+
+    def leader(self, joint: int) -> str | None:
+        """Returns the name of the independent joint that moves a joint; None for a locked one."""
+        master = self.drives.get(joint, Drive(joint, 1.0, 0.0)).master
+        return None if master is None else self.joints[master]
+
+    def open_in(self, robot: Robot) -> Iterator[Open]:
+        """Yields the equalities that configurations of the robot do not keep."""
+        if not self.active:
+            return
+        mujoco, model, data = self.mujoco, self.model, self.mujoco.MjData(self.model)
+        residuals: dict[int, float] = {}
+        touched: dict[int, set[int]] = {}
+        for q in robot.random_configurations(_CONFIGURATIONS, seed=0):
+            data.qpos[:] = self._qpos(robot, q)
+            for compute in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeConstraint):
+                compute(model, data)
+            jacobian = self._jacobian(data)
+            for row in np.flatnonzero(data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)):
+                equality = int(data.efc_id[row])
+                residuals[equality] = max(residuals.get(equality, 0.0), abs(float(data.efc_pos[row])))
+                moves = np.flatnonzero(np.abs(jacobian[row]) > _CLOSED * np.abs(jacobian[row]).max(initial=0.0))
+                joints = self.between(self._bodies(equality)) or {int(model.dof_jntid[dof]) for dof in moves}
+                touched[equality] = touched.get(equality, set()) | joints
+        for equality, residual in residuals.items():
+            if residual > _CLOSED and not self._is_free(equality, touched[equality]):
+                yield Open(self._described(equality), touched[equality], residual)
+
+    def _jacobian(self, data: Any) -> Any:
+        rows, dofs = data.nefc, self.model.nv
+        if not self.mujoco.mj_isSparse(self.model):
+            # MuJoCo leaves out rows of zeros, and keeps room for them.
+            return np.reshape(np.ravel(data.efc_J)[: rows * dofs], (rows, dofs))
+        dense = np.zeros((rows, dofs))
+        self.mujoco.mju_sparse2dense(
+            dense, np.ravel(data.efc_J), data.efc_J_rownnz, data.efc_J_rowadr, np.ravel(data.efc_J_colind)
+        )
+        return dense
+
+    def _qpos(self, robot: Robot, q: Any) -> Any:
+        """Returns the positions of all joints of the model; those without an axis stay where the model has them."""
+        known = dict(zip(robot.joint_names, q, strict=True)) | robot.held_joints
+        positions = np.array(self.model.qpos0)
+        for joint in range(len(self.joints)):
+            master, scale, offset = self.drives.get(joint, Drive(joint, 1.0, 0.0))
+            if master is None:
+                positions[self.model.jnt_qposadr[joint]] = offset
+            elif (at := known.get(self.joints[master])) is not None:
+                positions[self.model.jnt_qposadr[joint]] = scale * at + offset
+        return positions
+
+    def _is_free(self, equality: int, joints: set[int]) -> bool:
+        """Whether a free body follows: one that is moved by hand (mocap), or one with a free joint."""
+        if any(self._joint_kind(joint) == "mjJNT_FREE" for joint in joints):
+            return True
+        return any(self.model.body_mocapid[self.model.body_rootid[body]] >= 0 for body in self._bodies(equality))
+
+    def _joint_kind(self, joint: int) -> str:
+        name: str = self.mujoco.mjtJoint(self.model.jnt_type[joint]).name
+        return name
+
+    def _kind(self, equality: int) -> str:
+        name: str = self.mujoco.mjtEq(self.model.eq_type[equality]).name
+        return name.removeprefix("mjEQ_").lower()
+
+    def _ends(self, equality: int) -> list[int]:
+        """Returns the indices of the one or two objects that an equality couples."""
+        ends = (int(self.model.eq_obj1id[equality]), int(self.model.eq_obj2id[equality]))
+        return [end for end in ends if end >= 0]
+
+    def _bodies(self, equality: int) -> list[int]:
+        """Returns the two bodies of a connect or weld."""
+        if self._kind(equality) not in ("connect", "weld"):
+            return []
+        of_sites = self.model.eq_objtype[equality] == int(self.mujoco.mjtObj.mjOBJ_SITE)
+        return [int(self.model.site_bodyid[end]) if of_sites else end for end in self._ends(equality)]
+
+    def between(self, bodies: Iterable[int]) -> set[int]:
+        """Returns the joints on the way between two bodies; the empty set without bodies.
+
+        The Jacobian of an open loop would name those below both bodies too, which turn the gap.
+        """
+        joints: set[int] = set()
+        for body in bodies:
+            at = body
+            while at > 0:
+                first, count = self.model.body_jntadr[at], self.model.body_jntnum[at]
+                joints ^= set(range(first, first + count))
+                at = int(self.model.body_parentid[at])
+        return joints
+
+    def _described(self, equality: int) -> str:
+        """Returns kind, name and ends of an equality, for messages."""
+        model, kind, ends = self.model, self._kind(equality), self._ends(equality)
+        if bodies := self._bodies(equality):
+            ends_shown = [f"'{model.body(body).name or f'body_{body}'}'" for body in bodies]
+        elif kind == "tendon":
+            ends_shown = [f"'{model.tendon(end).name or f'tendon_{end}'}'" for end in ends]
+        else:
+            ends_shown = [f"'{self.joints[end]}'" for end in ends] if kind == "joint" else []
+        name = model.equality(equality).name
+        of = f" of {' and '.join(ends_shown)}" if ends_shown else ""
+        return f"the {kind} equality" + (f" '{name}'" if name else "") + of
+
+    def _linear(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
+        """Yields the equation of a linear equality: factors by joint, the follower first, and their weighted sum."""
+        model, kind, ends = self.model, self._kind(equality), self._ends(equality)
+        if kind == "weld":
+            yield from self._weld(equality)
+        constant, scale, *bends = (float(factor) for factor in model.eq_data[equality][:5])
+        if kind not in ("joint", "tendon") or (len(ends) == 2 and any(bends)):
+            return
+        if kind == "joint":
+            sides: list[dict[int, float] | None] = [{end: 1.0} for end in ends]
+            rests = [float(model.qpos0[model.jnt_qposadr[end]]) for end in ends]
+        else:
+            sides = [self._tendon(end) for end in ends]
+            rests = [float(model.tendon_length0[end]) for end in ends]
+        factors, total = dict[int, float](), constant
+        for side, rest, sign in zip(sides, rests, (1.0, -scale), strict=False):
+            if side is None:
+                return
+            total += sign * rest
+            for joint, factor in side.items():
+                factors[joint] = factors.get(joint, 0.0) + sign * factor
+        yield factors, total
+
+    def _weld(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
+        """Yields the lock of a weld across one hinge or slide."""
+        joints = self.between(self._bodies(equality))
+        if len(joints) == 1 and not self._is_free(equality, joints):
+            (joint,) = joints
+            if self._joint_kind(joint) in ("mjJNT_HINGE", "mjJNT_SLIDE"):
+                yield {joint: 1.0}, float(self.model.qpos0[self.model.jnt_qposadr[joint]])
+
+    def _tendon(self, tendon: int) -> dict[int, float] | None:
+        """Returns the coefficients of joints in the length of a fixed tendon, later joints first; None for others."""
+        model = self.model
+        factors: dict[int, float] = {}
+        first, count = model.tendon_adr[tendon], model.tendon_num[tendon]
+        for wrap in range(first, first + count):
+            if model.wrap_type[wrap] != int(self.mujoco.mjtWrap.mjWRAP_JOINT):
+                return None
+            joint = int(model.wrap_objid[wrap])
+            factors[joint] = factors.get(joint, 0.0) + float(model.wrap_prm[wrap])
+        return dict(sorted(factors.items(), reverse=True))
+
+    def _solve(self, equations: list[tuple[dict[int, float], float]]) -> None:
+        """Makes each equation of one or two independent joints a drive, until none is left."""
+        found = True
+        while found:
+            found = False
+            for equation in list(equations):
+                factors, total = self._reduced(*equation)
+                if len(factors) > 2:
+                    continue
+                equations.remove(equation)
+                if factors:
+                    self._drive(factors, total)
+                    found = True
+
+    def _reduced(self, factors: dict[int, float], total: float) -> tuple[dict[int, float], float]:
+        """Expresses an equation by independent joints."""
+        reduced: dict[int, float] = {}
+        for joint, factor in factors.items():
+            master, scale, offset = self.drives.get(joint, Drive(joint, 1.0, 0.0))
+            total -= factor * offset
+            if master is not None:
+                reduced[master] = reduced.get(master, 0.0) + factor * scale
+        return {joint: factor for joint, factor in reduced.items() if abs(factor) > 1e-12}, total
+
+    def _drive(self, factors: dict[int, float], total: float) -> None:
+        """Lets the first joint of an equation, and its followers, follow the second; locks it without one."""
+        (follower, own), *others = factors.items()
+        master, factor = others[0] if others else (None, 0.0)
+        self.drives[follower] = Drive(follower, 1.0, 0.0)
+        for joint, drive in self.drives.items():
+            if drive.master == follower:
+                offset = drive.offset + drive.scale * total / own
+                self.drives[joint] = Drive(master, -drive.scale * factor / own, offset)
