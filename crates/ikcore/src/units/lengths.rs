@@ -35,11 +35,11 @@ pub fn of_position(robot: &Robot, what: &str, tips: &[usize], position: &[f64; 3
     if !position.iter().any(|x| x.abs() > FAR) || tips.len() > 2 {
         return None;
     }
-    far_position(what, &Ball::of(robot, tips), position)
+    far_position(what, &ReachBall::of(robot, tips), position)
 }
 
 #[cold]
-fn far_position(what: &str, ball: &Ball, position: &[f64; 3]) -> Option<UnitDoubt> {
+fn far_position(what: &str, ball: &ReachBall, position: &[f64; 3]) -> Option<UnitDoubt> {
     let largest = (0..3).max_by(|i, j| position[*i].abs().total_cmp(&position[*j].abs()))?;
     let thing = || format!("{what}: {}", ["x", "y", "z"][largest]);
     let doubted = ball.is_far(ball.distance(position)) && ball.holds_as_millimetres(position, 0.0);
@@ -49,13 +49,13 @@ fn far_position(what: &str, ball: &Ball, position: &[f64; 3]) -> Option<UnitDoub
 /// Doubts the offset of a tool from the tip of a robot (m).
 pub fn of_tool(robot: &Robot, tool: &Pose) -> Option<UnitDoubt> {
     let offset: [f64; 3] = tool.translation.vector.into();
-    let ball = Ball { center: [0.0; 3], ..Ball::of(robot, &[0]) };
+    let ball = ReachBall { center: [0.0; 3], ..ReachBall::of(robot, &[0]) };
     far_position("tool", &ball, &offset)
 }
 
 /// Doubts obstacles: all of them that are no floor or wall are far away, and one is within reach as millimetres.
 pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a Shape>) -> Option<UnitDoubt> {
-    let ball = Ball::of_all(robot);
+    let ball = ReachBall::of_all(robot);
     let mut found = None;
     for (number, shape) in obstacles.into_iter().enumerate() {
         let BoundingBall { center, radius } = shape.bounding_ball();
@@ -77,12 +77,12 @@ pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a S
 
 /// Doubts the size of links and bodies of a robot.
 pub fn of_sizes(robot: &Robot) -> Option<UnitDoubt> {
-    let links = Ball::of_links(robot);
+    let links = ReachBall::of_links(robot);
     if links.radius > LONG_LINKS && links.radius < 1e3 * LONG_LINKS {
         let thing = format!("reach of robot '{}'", robot.name());
         return Some(UnitDoubt::millimetres(thing, links.radius, "the sum of its links".into()));
     }
-    let ball = Ball::of_all(robot);
+    let ball = ReachBall::of_all(robot);
     let base = robot.link_names().next().unwrap_or_default();
     let large = robot.bodies().iter().filter(|body| body.link != base).find_map(|body| {
         let radius = body.shape.bounding_ball().radius;
@@ -99,16 +99,16 @@ pub fn of_sizes(robot: &Robot) -> Option<UnitDoubt> {
 
 /// Returns the reach of the stretched links, without slides (m).
 pub(super) fn reach_of_links(robot: &Robot) -> f64 {
-    Ball::of_links(robot).radius
+    ReachBall::of_links(robot).radius
 }
 
 /// Ball that an arm reaches.
-struct Ball {
+struct ReachBall {
     center: [f64; 3],
     radius: f64,
 }
 
-impl Ball {
+impl ReachBall {
     fn of(robot: &Robot, tips: &[usize]) -> Self {
         let [lower, upper]: [Vec<f64>; 2] =
             [robot.joints().iter().map(|j| j.lower).collect(), robot.joints().iter().map(|j| j.upper).collect()];
@@ -166,7 +166,7 @@ impl Ball {
     }
 }
 
-impl From<Reach> for Ball {
+impl From<Reach> for ReachBall {
     fn from(Reach { center, radius, .. }: Reach) -> Self {
         Self { center, radius }
     }
