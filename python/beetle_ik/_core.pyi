@@ -571,13 +571,18 @@ def pose(
     """Makes a pose (4, 4) from a position (3,) (m) and an orientation. The keyword names the form of the orientation.
 
     Args:
-        position: (3,) (m).
+        position: (3,) (m); None: the origin, or the position of a `matrix` (4, 4).
         xyzw, wxyz: quaternion (4,), of any nonzero length.
         rpy: fixed-axis roll, pitch, yaw (rad): Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
         rotvec: rotation vector (rad).
-        matrix: rotation matrix (3, 3).
+        matrix: rotation matrix (3, 3), or a pose (4, 4). Rounded ones are taken, as the nearest rotation: R'R may differ from the
+            identity by 0.002, as that of a matrix of three decimals does.
+        degrees: whether `rpy` and `rotvec` are in degrees.
 
     Without an orientation the axes are those of the base.
+
+    Raises:
+        InvalidInputError: a matrix that is no rotation, a quaternion of length zero, or several orientations.
 
     For example:
 
@@ -586,6 +591,8 @@ def pose(
                [0. , 1. , 0. , 0.1],
                [0. , 0. , 1. , 0.3],
                [0. , 0. , 0. , 1. ]])
+        >>> bik.pose([0.4, 0.1, 0.3], rpy=[180, 0, 90], degrees=True)[:3, 2].round(3) + 0.0
+        array([ 0.,  0., -1.])
     """
 
 # --- limits -------------------------------------------------------------------------------------
@@ -2865,7 +2872,9 @@ class Tracker:
         jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
         most, and stops smoothly; otherwise the arm goes on towards the last target. A loop may also pass the last
         target again in each tick until the next one comes: in a stream of 10 Hz or more, a repeated target counts as
-        None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged.
+        None for two intervals. A target that is not finite raises an error and leaves the tracker unchanged. A rotation that
+        has drifted, R'R by up to 0.25 from the identity, is taken as the nearest rotation, and the message of the first such
+        step says so.
 
         Args:
             target: target of the tip, or of several tips, at the end of the tick; None: no new target.

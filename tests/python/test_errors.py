@@ -304,7 +304,22 @@ def test_wrong_paths_are_named(call: Callable[[], object], error: type[Exception
 @told(
     [
         (lambda: bik.pose([0, 0]), Invalid, "position: expected shape (3,), got (2,)"),
-        (lambda: bik.pose(None), Invalid, "position must be an array of numbers, got None"),
+        (lambda: bik.pose(["a"]), Invalid, "position must be an array of numbers, got ['a']"),
+        (
+            lambda: bik.pose(None),
+            Invalid,
+            "pose needs a position (3,) or an orientation: xyzw= or wxyz= for a quaternion, rpy=, rotvec= or matrix=",
+        ),
+        (
+            lambda: bik.pose([0, 0, 0], degrees=True),
+            Invalid,
+            "degrees=True belongs to rpy= or rotvec=: leave it out",
+        ),
+        (
+            lambda: bik.pose([0, 0, 0], matrix=np.eye(4)),
+            Invalid,
+            "matrix (4, 4) has a position: leave out position, or give its rotation (3, 3)",
+        ),
         (
             lambda: bik.pose([0, 0, 0], rpy=[0, 0, 0], rotvec=[0, 0, 0]),
             Invalid,

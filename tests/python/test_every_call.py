@@ -230,7 +230,7 @@ def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[...,
         if not isinstance(thing, type):
             yield prefix + name, thing
             continue
-        if issubclass(thing, bik.BeetleIkError | bik.Status):
+        if issubclass(thing, bik.BeetleIkError | bik.UnitsWarning | bik.Status):
             continue
         if name not in ("Goal", "Obstacle", "Task"):
             yield prefix + name, thing

@@ -17,7 +17,7 @@ def nearest(rotation: np.ndarray) -> np.ndarray:
     return u @ v
 
 
-@pytest.mark.parametrize("decimals", [3, 4, 5, 6])
+@pytest.mark.parametrize("decimals", [3, 4, 5])
 def test_rounded_matrices_become_the_nearest_rotation(decimals: int) -> None:
     for pose in PANDA.fk(PANDA.random_configurations(50, seed=decimals)):
         rounded = pose.round(decimals)
@@ -120,7 +120,7 @@ def test_arrays_that_a_call_returns_may_be_written_to() -> None:
     )
     arrays = [
         *[PANDA.fk(q) for q in (READY, several)],
-        *[PANDA.fk(q, link="panda_link4") for q in (READY, several)],
+        *[PANDA.fk(q, link="link_4") for q in (READY, several)],
         *[PANDA.jacobian(q) for q in (READY, several)],
         *[PANDA.clip(q) for q in (READY, several)],
         *[two.fk(q) for q in (one, [one, one])],

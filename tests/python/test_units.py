@@ -22,8 +22,8 @@ TARGET = (
     "y is 400 m (the arm reaches 0.9881 m), which looks like millimetres: 400 mm are 0.4000 m; lengths are in metres"
 )
 SPHERE = (
-    "distance of obstacle 0 (Sphere) is 345.0 m (the arm reaches 0.9881 m), which looks like millimetres: "
-    "345.0 mm are 0.3450 m; lengths are in metres"
+    "distance of obstacle 0 (Sphere) is 449.8 m (the arm reaches 0.9881 m), which looks like millimetres: "
+    "449.8 mm are 0.4498 m; lengths are in metres"
 )
 
 
@@ -53,7 +53,7 @@ def urdf(lower: float, upper: float, velocity: float, rpy: str = "0 0 0") -> str
     [
         lambda: PANDA.fk(DEGREES),
         lambda: PANDA.fk([READY, DEGREES]),
-        lambda: PANDA.fk(DEGREES, link="panda_link4"),
+        lambda: PANDA.fk(DEGREES, link="link_4"),
         lambda: PANDA.clip(DEGREES),
         lambda: PANDA.jacobian(DEGREES),
         lambda: PANDA.link_poses(DEGREES),
@@ -162,9 +162,9 @@ def test_lengths_of_a_robot_in_millimetres_warn() -> None:
     assert said(lambda: PANDA.with_tool(bik.pose([0, 0, 103]))) == [
         "tool: z is 103 m (the arm reaches 0.9881 m), " + metres.format(103, "0.1030")
     ]
-    hand = [("panda_link7", (0, 0, 0), (0, 0, 0.1), 60.0)]
+    hand = [("link_7", (0, 0, 0), (0, 0, 0.1), 60.0)]
     assert said(lambda: PANDA.with_capsules(hand)) == [
-        "radius of a body of link 'panda_link7' (given) is 60.05 m (the arm reaches 0.9881 m), "
+        "radius of a body of link 'link_7' (given) is 60.05 m (the arm reaches 0.9881 m), "
         + metres.format("60.05", "0.06005")
     ]
 

@@ -5,7 +5,7 @@ use ikcore::units;
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Rows, array, is_list, shape_text, table, vector};
+use crate::convert::{Numbers, Rows, array, is_list, own, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::python_calls;
 use crate::units::doubt;
@@ -78,5 +78,5 @@ pub fn q_from<'py>(
         }
     };
     let q = robot.q_from(names, numbers.as_slice()?, degrees, ignore_extra).map_err(raise)?;
-    table(values.py(), q, &shape)
+    table(values.py(), q, &shape).map(own)
 }

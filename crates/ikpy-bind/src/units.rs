@@ -16,32 +16,45 @@ use crate::python_calls;
 use crate::wording::said;
 
 thread_local! {
-    /// Number of calls in progress, one inside another.
-    static CALLS: Cell<u32> = const { Cell::new(0) };
-    /// Whether there are doubts.
-    static DOUBTED: Cell<bool> = const { Cell::new(false) };
+    static CALLS: Calls = const { Calls { depth: Cell::new(0), doubted: Cell::new(false) } };
     /// Sentences of the doubts.
     static DOUBTS: RefCell<Vec<String>> = const { RefCell::new(vec![]) };
+}
+
+/// Calls in progress; together, since each look at a variable of a thread costs some nanoseconds.
+struct Calls {
+    /// Number of calls, one inside another.
+    depth: Cell<u32>,
+    /// Whether there are doubts.
+    doubted: Cell<bool>,
 }
 
 /// Counts a call that begins.
 #[inline]
 pub fn begin_call() {
-    CALLS.set(CALLS.get() + 1);
+    CALLS.with(|calls| calls.depth.set(calls.depth.get() + 1));
+}
+
+/// Counts a call that ends; returns whether it is the outermost one and there are doubts.
+#[inline]
+fn ends_in_doubt() -> bool {
+    CALLS.with(|calls| {
+        let depth = calls.depth.get().saturating_sub(1);
+        calls.depth.set(depth);
+        depth == 0 && calls.doubted.get()
+    })
 }
 
 /// Counts a call that ends with a result, and warns of its doubts if it is the outermost one.
 #[inline]
 pub fn end_call() -> PyResult<()> {
-    CALLS.set(CALLS.get().saturating_sub(1));
-    if CALLS.get() > 0 || !DOUBTED.get() { Ok(()) } else { warn_of_doubts() }
+    if ends_in_doubt() { warn_of_doubts() } else { Ok(()) }
 }
 
 /// Counts a call that ends with a pending exception, and adds the doubts to the message of an error of this library: they are
 /// probably its reason.
 pub fn end_call_with_error() {
-    CALLS.set(CALLS.get().saturating_sub(1));
-    if CALLS.get() == 0 && DOUBTED.get() {
+    if ends_in_doubt() {
         let doubts = taken();
         Python::attach(|py| {
             if let Some(error) = PyErr::take(py) {
@@ -52,7 +65,7 @@ pub fn end_call_with_error() {
 }
 
 fn taken() -> String {
-    DOUBTED.set(false);
+    CALLS.with(|calls| calls.doubted.set(false));
     DOUBTS.take().join("; ")
 }
 
@@ -77,8 +90,11 @@ pub fn doubt(found: impl IntoIterator<Item = UnitDoubt>) -> PyResult<()> {
     if !any {
         return Ok(());
     }
-    DOUBTED.set(true);
-    if CALLS.get() == 0 { warn_of_doubts() } else { Ok(()) }
+    let outside = CALLS.with(|calls| {
+        calls.doubted.set(true);
+        calls.depth.get() == 0
+    });
+    if outside { warn_of_doubts() } else { Ok(()) }
 }
 
 /// Doubts a target.

@@ -13,6 +13,9 @@ use crate::wording::number;
 /// Distance out of reach that looks like millimetres (m), and as a multiple of the reach.
 const FAR: f64 = 30.0;
 
+/// Distance (m) beyond which a number is nobody's millimetres.
+const FARTHEST: f64 = 1e6;
+
 /// Multiple of the reach within which a position lies if it is in millimetres.
 const AS_MILLIMETRES: f64 = 3.0;
 
@@ -32,11 +35,11 @@ pub fn of_position(robot: &Robot, what: &str, tips: &[usize], position: &[f64; 3
     if !position.iter().any(|x| x.abs() > FAR) || tips.len() > 2 {
         return None;
     }
-    far_position(what, &Ball::of(robot, tips), position)
+    far_position(what, &ReachBall::of(robot, tips), position)
 }
 
 #[cold]
-fn far_position(what: &str, ball: &Ball, position: &[f64; 3]) -> Option<UnitDoubt> {
+fn far_position(what: &str, ball: &ReachBall, position: &[f64; 3]) -> Option<UnitDoubt> {
     let largest = (0..3).max_by(|i, j| position[*i].abs().total_cmp(&position[*j].abs()))?;
     let thing = || format!("{what}: {}", ["x", "y", "z"][largest]);
     let doubted = ball.is_far(ball.distance(position)) && ball.holds_as_millimetres(position, 0.0);
@@ -46,13 +49,13 @@ fn far_position(what: &str, ball: &Ball, position: &[f64; 3]) -> Option<UnitDoub
 /// Doubts the offset of a tool from the tip of a robot (m).
 pub fn of_tool(robot: &Robot, tool: &Pose) -> Option<UnitDoubt> {
     let offset: [f64; 3] = tool.translation.vector.into();
-    let ball = Ball { center: [0.0; 3], ..Ball::of(robot, &[0]) };
+    let ball = ReachBall { center: [0.0; 3], ..ReachBall::of(robot, &[0]) };
     far_position("tool", &ball, &offset)
 }
 
 /// Doubts obstacles: all of them that are no floor or wall are far away, and one is within reach as millimetres.
 pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a Shape>) -> Option<UnitDoubt> {
-    let ball = Ball::of_all(robot);
+    let ball = ReachBall::of_all(robot);
     let mut found = None;
     for (number, shape) in obstacles.into_iter().enumerate() {
         let BoundingBall { center, radius } = shape.bounding_ball();
@@ -62,7 +65,7 @@ pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a S
         }
         if found.is_none() && radius.is_finite() {
             let distance = if ball.is_far(from_ball) { from_ball } else { ball.distance_of(shape) };
-            if ball.is_far(distance) && ball.holds_as_millimetres(&center, radius) {
+            if ball.is_far(distance) && distance < FARTHEST && ball.holds_as_millimetres(&center, radius) {
                 found = Some((number, shape.name(), distance + ball.radius));
             }
         }
@@ -74,16 +77,16 @@ pub fn of_obstacles<'a>(robot: &Robot, obstacles: impl IntoIterator<Item = &'a S
 
 /// Doubts the size of links and bodies of a robot.
 pub fn of_sizes(robot: &Robot) -> Option<UnitDoubt> {
-    let links = Ball::of_links(robot);
+    let links = ReachBall::of_links(robot);
     if links.radius > LONG_LINKS && links.radius < 1e3 * LONG_LINKS {
         let thing = format!("reach of robot '{}'", robot.name());
         return Some(UnitDoubt::millimetres(thing, links.radius, "the sum of its links".into()));
     }
-    let ball = Ball::of_all(robot);
+    let ball = ReachBall::of_all(robot);
     let base = robot.link_names().next().unwrap_or_default();
     let large = robot.bodies().iter().filter(|body| body.link != base).find_map(|body| {
         let radius = body.shape.bounding_ball().radius;
-        (radius > LARGE_BODY[0].max(LARGE_BODY[1] * ball.radius) && radius < 1e6).then_some((body, radius))
+        (radius > LARGE_BODY[0].max(LARGE_BODY[1] * ball.radius) && radius < FARTHEST).then_some((body, radius))
     })?;
     let (body, radius) = large;
     let thing = format!("radius of a body of link '{}' ({})", body.link, body.source);
@@ -96,16 +99,16 @@ pub fn of_sizes(robot: &Robot) -> Option<UnitDoubt> {
 
 /// Returns the reach of the stretched links, without slides (m).
 pub(super) fn reach_of_links(robot: &Robot) -> f64 {
-    Ball::of_links(robot).radius
+    ReachBall::of_links(robot).radius
 }
 
 /// Ball that an arm reaches.
-struct Ball {
+struct ReachBall {
     center: [f64; 3],
     radius: f64,
 }
 
-impl Ball {
+impl ReachBall {
     fn of(robot: &Robot, tips: &[usize]) -> Self {
         let [lower, upper]: [Vec<f64>; 2] =
             [robot.joints().iter().map(|j| j.lower).collect(), robot.joints().iter().map(|j| j.upper).collect()];
@@ -163,7 +166,7 @@ impl Ball {
     }
 }
 
-impl From<Reach> for Ball {
+impl From<Reach> for ReachBall {
     fn from(Reach { center, radius, .. }: Reach) -> Self {
         Self { center, radius }
     }

@@ -134,12 +134,12 @@ fn farther(joint: &Joint) -> f64 {
     if joint.lower.abs() > joint.upper.abs() { joint.lower } else { joint.upper }
 }
 
-/// Whether the limits of all joints are implausibly wide, and not of one meaning: one round number, or turns.
+/// Whether the limits of all joints are implausibly wide, and none of them means turns, or no limit.
 fn together(joints: &[&Joint]) -> bool {
     let ranges: Vec<f64> = joints.iter().map(|joint| farther(joint).abs()).collect();
     let largest = ranges.iter().copied().fold(0.0, f64::max);
     let wide = largest >= WIDE[1] && ranges.iter().all(|range| (WIDE[0]..=MOST_DEGREES).contains(range));
-    joints.len() > 1 && wide && joints.iter().any(|joint| !is_unlimited(joint) && !is_of_turns(joint))
+    joints.len() > 1 && wide && !joints.iter().any(|joint| is_unlimited(joint) || is_of_turns(joint))
 }
 
 /// Whether both limits look typed in degrees.
@@ -202,6 +202,7 @@ mod tests {
             &[(-20.0 * PI, 20.0 * PI), (-40.0 * PI, 40.0 * PI)],
             &[(-62.8, 62.8)],
             &[(-3.0, 3.0), (-100.0, 100.0)],
+            &[(-96.29, 96.29), (-100.0, 100.0)],
             &[(-1e16, 1e16); 4],
             &[(0.0, 12.5), (-2.0, 85.3)],
         ] {
