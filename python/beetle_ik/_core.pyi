@@ -2147,7 +2147,7 @@ class SolutionSet:
     @property
     def complete(self) -> bool:
         """Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
-        and where `limit` or `separation` left solutions out.
+        where `limit` or `separation` left solutions out, beside singular poses, and for tolerances above 1e-5.
         """
     @property
     def singular(self) -> bool:

@@ -72,7 +72,7 @@ outcome! {
 #[pymethods]
 impl PySolutionSet {
     /// Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
-    /// and where `limit` or `separation` left solutions out.
+    /// where `limit` or `separation` left solutions out, beside singular poses, and for tolerances above 1e-5.
     #[getter]
     fn complete(&self) -> bool {
         self.core.complete

@@ -320,7 +320,7 @@ fn tolerances_tighter_than_rounding_are_met_or_nothing_is_claimed() {
     let robot = robot("ur10");
     let q = [0.4, -1.2, 1.1, -1.3, 0.9, 0.2];
     let mut options = from(&q);
-    options.each.tolerance = ikcore::task::Tolerance { position: 1e-18, rotation: 1e-18 };
+    options.each.tolerance = Tolerance { position: 1e-18, rotation: 1e-18 };
     let found = solve_all(&robot, &pose_at(&robot, &q), &options, &mut Unattended).unwrap();
     assert!(!found.complete || found.solutions.iter().all(|solution| solution.error.position <= 1e-18));
 }
