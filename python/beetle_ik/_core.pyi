@@ -2435,6 +2435,7 @@ def track(
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
+    recover: bool = True,
     progress: _Progress = None,
 ) -> TrackResult:
     """Follows a path with the tip of the robot, tick by tick, inside the limits.
@@ -2470,6 +2471,8 @@ def track(
             at its "start".
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
+        recover: whether an arm that comes no nearer to the path, at a joint limit or in a singular configuration, goes to a
+            configuration on it if one is known, as in `Tracker`.
         progress: True shows a progress bar; a callable is called with (done, total).
 
     Returns:
@@ -2656,6 +2659,9 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
+        recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
+            configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
+            a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
 
     For example:
 
@@ -2685,6 +2691,7 @@ class Tracker:
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
         timeout: float | None = None,
+        recover: bool = True,
     ) -> Tracker: ...
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot

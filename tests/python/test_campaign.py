@@ -21,6 +21,7 @@ from rough_attack import Rough
 ORACLES = {"state_to_state": "ruckig", "time_optimal": "toppra", "equalities": "mujoco"}
 CASES = {
     "clear_ticks": 1,
+    "dead_ends": 6,
     "clear_plans": 2,
     "time_optimal": 3,
     "out_of_reach": 6,
@@ -106,6 +107,10 @@ SPOILED = {
     "budgets": (
         "seen.append((np.zeros(1), 0.0))",
         "the budget is not exact",
+    ),
+    "dead_ends": (
+        "away += 0.1",
+        "the arm stays away from its target",
     ),
     "tracker_lives": (
         "log += [('q', tracker.q + 1.0)]",

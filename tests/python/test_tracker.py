@@ -1,6 +1,7 @@
 """One control loop, one call a tick: the same as `track`, step by step."""
 
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -81,3 +82,41 @@ def test_wrong_input_is_named() -> None:
         bik.UnsupportedLimit, match="Tracker cannot honour callable velocity limits: it has no end time"
     ):
         bik.Tracker(IIWA, ON_CIRCLE, dt=0.2, limits=bik.Limits(velocity=lambda t: 1.0 + t))
+
+
+LED = np.array([0.6, 0.8, 0.0])  # leads the Panda into a dead end
+PANDA = bik.Robot.named("panda")
+START = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
+
+
+def led_too_far_and_back(limits: bik.Limits, **options: bool) -> tuple[list[np.ndarray], bik.Step]:
+    tracker, home, rows = bik.Tracker(PANDA, START, dt=0.02, limits=limits, **options), PANDA.fk(START), [START]
+    for tick in range(700):
+        target = home.copy()
+        target[:3, 3] += 1.3 * LED * max(1.0 - abs(tick / 200 - 1.0), 0.0)
+        step = tracker.step(target)
+        rows.append(step.q)
+    return rows, step
+
+
+@pytest.mark.parametrize("more", [{}, {"acceleration": 5.0}, {"acceleration": 5.0, "jerk": 50.0}])
+def test_an_arm_led_too_far_and_back_returns(more: dict[str, float]) -> None:
+    rows, step = led_too_far_and_back(bik.Limits(velocity=1.5, **more))
+    assert step.success, step.message
+    q = np.array(rows)
+    assert (q >= PANDA.lower).all()
+    assert (q <= PANDA.upper).all()
+    moves = np.vstack([np.zeros((3, 7)), np.diff(q, axis=0)])
+    for order, limit in enumerate((1.5, *more.values())):
+        assert np.abs(moves).max() <= limit * 0.02 ** (order + 1) * (1 + 1e-6)
+        moves = np.diff(moves, axis=0)
+
+
+def test_a_dead_end_is_told_with_the_joint_that_holds_the_arm() -> None:
+    _, step = led_too_far_and_back(bik.Limits(velocity=1.5), recover=False)
+    assert step.status == bik.Status.CAPPED
+    assert step.message == (
+        "joint 'panda_joint4', at its upper limit, holds the arm 0.1818 m and 0.02470 rad away; the target is in reach"
+        ": recover=True lets the arm go to a configuration on it"
+    )
+    assert pickle.loads(pickle.dumps(step)).message == step.message

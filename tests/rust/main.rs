@@ -115,6 +115,7 @@ mod tracking {
     mod streams;
     mod tips;
     mod track;
+    mod way_back;
     mod work;
 }
 mod trajectory {

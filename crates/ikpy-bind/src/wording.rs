@@ -23,6 +23,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::AllTurns => "turns=True",
         Setting::RaiseInvalid => "use on_invalid=\"raise\"",
         Setting::Ease => "ease=True",
+        Setting::Recover => "recover=True",
         Setting::FreeStart => "free_start=True",
         Setting::StartVelocity => "start_qd",
         Setting::StartConfiguration => "start_q",

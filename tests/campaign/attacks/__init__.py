@@ -8,6 +8,7 @@ from . import (
     calls,
     clearance,
     command_line,
+    dead_ends,
     described,
     kinematics,
     motion,
@@ -25,8 +26,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, motion, clearance, own_points),
-    *(readers, xacro_files, described, calibration, calls, command_line, units),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
+    *(own_points, readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -13,6 +13,7 @@ from ..attack import Attack, BrokenError, Case
 from .motion import check_rates
 
 EXACT = 2e-6  # m: what coal is exact to
+BELOW = 1e-7  # m: by how much a distance may be below the true one
 ROBOTS = {"panda": 0.05, "ur5e": 0.04, "iiwa14": 0.06}  # and the radius of their links (m)
 
 
@@ -34,7 +35,7 @@ def nearest(own: shapes.Shape, other: shapes.Shape) -> float:
 
 class Distances(Attack):
     name = "distances"
-    promise = "A distance is never above the true one, and at most a nanometre below"
+    promise = "A distance is never above the true one, and at most 1e-7 m below, 1e-9 m between capsules"
     page = "scenes"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
@@ -62,8 +63,8 @@ class Distances(Attack):
                 raise BrokenError("one says that they overlap", (found, exact))
         elif found > exact + EXACT:
             raise BrokenError("the distance is above the true one", (found, exact))
-        elif found < exact - 1e-5:
-            raise BrokenError("the distance is far below the true one", (found, exact))
+        elif found < exact - EXACT - BELOW:
+            raise BrokenError("the distance is below the true one", (found, exact))
         return 1
 
     def judge_refusal(self, case: Case, error: Exception) -> None:

@@ -11,6 +11,7 @@ from ..attack import Attack, BrokenError, Case
 from .solving import TURN, check_solution, inside, refuse_only_locked, size, wanted
 
 SAME = 1e-5  # rad: solutions nearer than this are one
+BESIDE = 5e-3  # rad: how far the tolerances admit configurations beside a solution
 SINGULAR = 1e-6  # smallest singular value of the Jacobian below which solutions are not told apart
 
 
@@ -18,25 +19,29 @@ class CompleteSets(Attack):
     name = "complete_sets"
     promise = "A set of solutions that is called complete contains every solution that a search finds"
     page = "all_solutions"
-    kinds = ("spherical", "parallel", "any", "planar", "five", "nearly")
+    kinds = ("spherical", "parallel", "any", "planar", "five", "nearly", "nearly five")
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         """Arms with closed forms; hard poses are at limits, at zero, and those of arms that are off by a little."""
         kind = str(random.choice(self.kinds))
-        joints = arms.easy_arm(random, {"planar": 3, "five": 5}.get(kind, 6))
+        joints = arms.easy_arm(random, {"planar": 3, "five": 5, "nearly five": 5}.get(kind, 6))
         for joint in joints:
             joint.update(kind="revolute", lower=-float(random.uniform(1, 6)), upper=float(random.uniform(1, 6)))
+        if kind == "nearly five":  # flat beyond the first joint: half a turn of it nearly gives further solutions
+            for joint, axis in zip(joints, ("z", "y", "y", "y", "x"), strict=True):
+                x, _, z = joint["xyz"]
+                joint.update(rpy=(0.0, 0.0, 0.0), xyz=(x, 0.0, z), axis=tuple(float(name == axis) for name in "xyz"))
         if kind in ("spherical", "nearly"):
             for joint in joints[4:]:
                 joint["xyz"] = (0.0, 0.0, 0.0)
         if kind in ("parallel", "planar"):
             for joint in joints[1:] if kind == "planar" else joints[2:4]:
                 joint.update(rpy=(0.0, 0.0, 0.0), axis=joints[0 if kind == "planar" else 1]["axis"])
-        if kind == "nearly":
+        if kind in ("nearly", "nearly five"):
+            most = -3 if kind == "nearly" else -6
             for joint in joints:
-                joint["xyz"] = arms.triple(
-                    np.array(joint["xyz"]) + 10.0 ** random.uniform(-9, -3) * random.normal(size=3)
-                )
+                off = 10.0 ** random.uniform(-9, most) * random.normal(size=3)
+                joint["xyz"] = arms.triple(np.array(joint["xyz"]) + off)
         arms.put(joints, random, hard)
         return {"joints": joints, "starts": int(random.integers(2**31))}
 
@@ -56,11 +61,13 @@ class CompleteSets(Attack):
         poses, jacobians = arms.kinematics(joints, known)
         away, angle = arms.pose_error(poses, target)
         steepness = np.linalg.svd(jacobians, compute_uv=False)[:, -1]
-        exact = (away < 1e-9 * size(case)) & (angle < 1e-9) & (steepness > 1e-3)
-        for q in known[exact]:
-            apart = found.q - q
-            if not (np.abs(apart - TURN * np.round(apart / TURN)).max(axis=1, initial=0.0) < SAME).any():
-                raise BrokenError("a complete set lacks a solution", q.tolist())
+        exact = (away < 1e-9 * size(case)) & (angle < 1e-9)
+        within = (away < 5e-7) & (angle < 5e-7)  # half of the tolerances
+        for which, same in ((exact, SAME), (within, BESIDE)):
+            for q in known[which & (steepness > 1e-3)]:
+                apart = found.q - q
+                if not (np.abs(apart - TURN * np.round(apart / TURN)).max(axis=1, initial=0.0) < same).any():
+                    raise BrokenError("a complete set lacks a solution", q.tolist())
         return 1
 
     def judge_refusal(self, case: Case, error: Exception) -> None:

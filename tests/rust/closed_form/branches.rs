@@ -4,12 +4,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::common::arms::{arm, calibrated_ur10, geared, jaco2, puma560};
 use crate::common::{bits, configurations, message, pose_at, robot};
-use ikcore::ik::{AllOptions, SolutionSet, SolveOptions, nearest_miss, solve_all};
+use ikcore::ik::{AllOptions, SolutionSet, SolveOptions, nearest_miss, solve, solve_all};
 use ikcore::limits::Limits;
 use ikcore::math::pose;
 use ikcore::robot::{Joint, Robot};
 use ikcore::solver::{Status, Unattended};
-use ikcore::task::{Target, Task, TaskKind};
+use ikcore::task::{Target, Task, TaskKind, Tolerance};
 
 const Q: f64 = FRAC_PI_2;
 
@@ -49,6 +49,12 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(turn).fold(0.0, f64::max)
 }
 
+/// Whether the tolerances admit configurations some milliradians from a solution.
+fn is_nearly_singular(robot: &Robot, found: &SolutionSet) -> bool {
+    let least = |q: &[f64]| robot.jacobian(q).unwrap().singular_values().min();
+    found.solutions.iter().any(|solution| least(solution.q) < 5e-3)
+}
+
 #[track_caller]
 fn assert_among(found: &SolutionSet, q: &[f64]) {
     let near = found.solutions.iter().any(|solution| apart(solution.q, q) < 1e-5);
@@ -80,7 +86,7 @@ fn the_arms_own_configuration_is_always_among_them() {
         for q in configurations(&robot, poses) {
             let found = all(&robot, &pose_at(&robot, &q), &from(&q));
             assert_among(&found, &q);
-            assert!(found.complete, "{name} {q:?}");
+            assert!(found.complete || is_nearly_singular(&robot, &found), "{name} {q:?}");
         }
     }
     for robot in [puma560(), panda_without_7(), jaco2()] {
@@ -102,7 +108,7 @@ fn every_solution_that_a_search_finds_is_in_the_set() {
             let found = all(&robot, &target, &options);
             options.each.task = Some(task);
             let searched = solve_all(&robot, &target, &options, &mut Unattended).unwrap();
-            assert!(!searched.complete && found.complete);
+            assert!(!searched.complete && (found.complete || is_nearly_singular(&robot, &found)));
             assert!(found.solutions.len() >= searched.solutions.len());
             for solution in searched.solutions.iter() {
                 // A search stops within 1e-6 of the pose: beside a singularity that is more in the joints.
@@ -281,7 +287,7 @@ fn joints_with_scale_and_offset() {
         assert_eq!(robot.closed_form(), "axes 2 to 4 parallel; at most 8 solutions");
         for q in configurations(&robot, 100) {
             let found = all(&robot, &pose_at(&robot, &q), &from(&q));
-            assert!(found.complete);
+            assert!(found.complete || is_nearly_singular(&robot, &found));
             let nearest = found.solutions.get(0).unwrap().q;
             assert!(q.iter().zip(nearest).all(|(a, b)| (a - b).abs() < 1e-5), "{scale}: {q:?} {nearest:?}");
         }
@@ -302,7 +308,7 @@ fn calibrated_arms_are_only_nearly_decomposable() {
         let mut lost = 0;
         for q in configurations(&robot, 300) {
             let found = all(&robot, &pose_at(&robot, &q), &from(&q));
-            assert!(found.complete || nearly);
+            assert!(found.complete || nearly || is_nearly_singular(&robot, &found));
             lost += usize::from(!found.solutions.iter().any(|solution| apart(solution.q, &q) < 1e-4));
         }
         assert_eq!(lost, 0);
@@ -317,4 +323,63 @@ fn tolerances_tighter_than_rounding_are_met_or_nothing_is_claimed() {
     options.each.tolerance = ikcore::task::Tolerance { position: 1e-18, rotation: 1e-18 };
     let found = solve_all(&robot, &pose_at(&robot, &q), &options, &mut Unattended).unwrap();
     assert!(!found.complete || found.solutions.iter().all(|solution| solution.error.position <= 1e-18));
+}
+
+/// Joints 2 to 4 parallel, then a wrist of two: a UR without its last joint. Its dimensions are off by multiples of `off`.
+fn five_joints(off: f64) -> Robot {
+    let rows = [[0.033, Q, 0.147], [0.155, 0.0, 0.0], [0.135, 0.0, 0.0], [0.0, Q, 0.0], [0.0, 0.0, 0.2175]];
+    let odd = [[0.3, -0.7, 0.2], [-0.9, 0.4, 0.1], [0.5, -0.2, 0.8], [-0.4, 0.6, -0.3], [0.1, 0.2, -0.5]];
+    arm("five", std::array::from_fn::<_, 5, _>(|k| std::array::from_fn(|i| rows[k][i] + off * odd[k][i])))
+}
+
+/// Requires each solution that descents from scattered starts find to be in a set that is called complete.
+#[track_caller]
+fn assert_nothing_is_missing(robot: &Robot, q: &[f64], tolerance: Tolerance) -> bool {
+    let target = pose_at(robot, q);
+    let mut options = AllOptions::default();
+    options.each.tolerance = tolerance;
+    let found = solve_all(robot, &target, &options, &mut Unattended).unwrap();
+    for start in if found.complete { configurations(robot, 60) } else { vec![] } {
+        // Weights of one change nothing but the method: each start is searched on its own.
+        let task = Task::new(TaskKind::Pose, Some(&[1.0; 6]), None, None).unwrap();
+        let each = SolveOptions { start: Some(start), task: Some(task), tolerance, ..SolveOptions::default() };
+        let one = solve(robot, &target, &each, &mut Unattended).unwrap();
+        let known = found.solutions.iter().any(|solution| apart(solution.q, &one.q) < 5e-3);
+        assert!(known || one.status != Status::Solved, "{}: {:?} is missing: {}", robot.name(), one.q, found.message());
+    }
+    found.complete
+}
+
+#[test]
+fn branches_that_miss_within_the_tolerances_are_not_lost() {
+    let mut complete = 0;
+    for off in [0.0, 1e-12, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 1e-5, 1e-3] {
+        let robot = five_joints(off);
+        for q in configurations(&robot, 12) {
+            complete += usize::from(assert_nothing_is_missing(&robot, &q, Tolerance::default()));
+        }
+    }
+    assert!(complete > 20, "{complete}");
+    // The arm with its last joint turned by half a turn, and the others folded over.
+    let robot = five_joints(1e-7);
+    let found =
+        solve_all(&robot, &pose_at(&robot, &[2.1, 2.0, 1.8, -1.5, 1.3]), &AllOptions::default(), &mut Unattended);
+    assert_eq!(found.unwrap().solutions.len(), 4);
+}
+
+#[test]
+fn nearly_singular_poses_and_wide_tolerances_claim_nothing() {
+    let mut claims = 0;
+    for name in ["ur5e", "ur10", "kr210"] {
+        let robot = robot(name);
+        for (k, mut q) in configurations(&robot, 60).into_iter().enumerate() {
+            // Two angles that are each too large to be singular, but not their product.
+            let small = [0.1, 0.03, 0.01, 3e-3, 1.5e-3][k % 5];
+            (q[2], q[4]) = if name == "kr210" { (q[2], small) } else { (small, -small) };
+            claims += usize::from(assert_nothing_is_missing(&robot, &q, Tolerance::default()));
+        }
+        let wide = Tolerance { position: 1e-3, rotation: 1e-3 };
+        assert!(configurations(&robot, 20).iter().all(|q| !assert_nothing_is_missing(&robot, q, wide)));
+    }
+    assert!((20..150).contains(&claims), "{claims}");
 }

@@ -231,6 +231,9 @@ fn a_grasped_part_moves_with_its_link_and_may_touch_what_it_is_told_to() {
         arm.with_attached("flange", &floor, &[], None).unwrap_err().to_string(),
         "a HalfSpace cannot be attached: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh can"
     );
+    let flat = Shape::ellipse([0.0, 0.0], [0.2, 0.1], 0.0).unwrap();
+    let refused = arm.with_attached("flange", &flat, &[], None).unwrap_err().to_string();
+    assert!(refused.starts_with("an Ellipse cannot be attached: a Sphere"), "{refused}");
     let taken = arm.with_attached("flange", &part, &[], Some("link_3")).unwrap_err().to_string();
     assert_eq!(taken, "robot 'panda': two links are named 'link_3'");
     assert!(arm.with_attached("flang", &part, &[], None).unwrap_err().to_string().contains("did you mean 'flange'?"));

@@ -124,23 +124,25 @@ impl Default for Candidates {
     }
 }
 
-/// Pose error of a configuration, by forward kinematics.
+/// How well a configuration has a pose, by forward kinematics, and how firmly the pose holds it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct BranchError {
+pub(crate) struct BranchFit {
     /// Position error (m).
     pub position: f64,
     /// Rotation error (rad).
     pub rotation: f64,
+    /// Lower bound on the change of the pose (m, rad) per unit of motion of the axes; 0 for redundant arms.
+    pub stiffness: f64,
 }
 
-/// Branches found for one pose, each verified by forward kinematics.
+/// Branches found for one pose, each verified by forward kinematics, and configurations that miss it by little.
 #[derive(Debug, Clone, Copy)]
 pub struct Branches<const N: usize> {
+    /// Branches from the front, near misses from the back.
     sets: [[f64; N]; MOST],
-    errors: [BranchError; MOST],
+    errors: [BranchFit; MOST],
     count: usize,
-    /// True if a rejected candidate was near the pose: a caller's tolerances may be wide enough for it.
-    pub near_miss: bool,
+    misses: usize,
     /// Number of forward kinematics evaluations used by verification.
     pub evaluations: usize,
     /// Doubt about further branches.
@@ -155,9 +157,9 @@ impl<const N: usize> Branches<N> {
     pub fn none() -> Self {
         Self {
             sets: [[0.0; N]; MOST],
-            errors: [BranchError::default(); MOST],
+            errors: [BranchFit::default(); MOST],
             count: 0,
-            near_miss: false,
+            misses: 0,
             evaluations: 0,
             doubt: Doubt::Anywhere,
             singular: false,
@@ -166,17 +168,34 @@ impl<const N: usize> Branches<N> {
 
     /// Adds a branch; ignored when full.
     #[inline(always)]
-    pub(crate) fn push(&mut self, set: [f64; N], error: BranchError) {
+    pub(crate) fn push(&mut self, set: [f64; N], error: BranchFit) {
         if self.count < MOST {
             self.sets[self.count] = set;
             self.errors[self.count] = error;
             self.count += 1;
+            self.misses = self.misses.min(MOST - self.count);
         }
+    }
+
+    /// Adds a configuration that misses the pose by so little that a caller's tolerances may admit it or one beside it;
+    /// ignored when full.
+    #[cold]
+    pub(crate) fn push_near_miss(&mut self, set: [f64; N]) {
+        if self.count + self.misses < MOST {
+            self.misses += 1;
+            self.sets[MOST - self.misses] = set;
+        }
+    }
+
+    /// Returns the configurations that miss the pose by little.
+    #[inline(always)]
+    pub(crate) fn near_misses(&self) -> &[[f64; N]] {
+        &self.sets[MOST - self.misses..]
     }
 
     /// Returns the pose error of each branch.
     #[inline(always)]
-    pub(crate) fn errors(&self) -> &[BranchError] {
+    pub(crate) fn errors(&self) -> &[BranchFit] {
         &self.errors[..self.count]
     }
 }

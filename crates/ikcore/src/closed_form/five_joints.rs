@@ -73,9 +73,12 @@ impl FiveJoints {
     pub fn solve(&self, target: &Frame) -> Branches<5> {
         let six = self.six.solve(target);
         let mut found = Branches::none();
+        let without = |set: &[f64; 6]| -> (f64, [f64; 5]) {
+            let (added, first) = if self.before { (set[0], 1) } else { (set[5], 0) };
+            (added, std::array::from_fn(|k| set[first + k]))
+        };
         for set in six.iter() {
-            let (added, rest) = if self.before { (set[0], &set[1..]) } else { (set[5], &set[..5]) };
-            let set: [f64; 5] = std::array::from_fn(|k| rest[k]);
+            let (added, set) = without(set);
             if added.abs() < NEAR_ZERO {
                 self.verifier.add_near(target, set, &mut found);
             } else {
@@ -95,7 +98,7 @@ impl FiveJoints {
         let is_settled = six.doubt == Doubt::None && !six.singular || !found.is_empty() && found.len() >= six.len();
         (found.doubt, found.singular) = (if is_settled { six.doubt } else { Doubt::Anywhere }, six.singular);
         found.evaluations += six.evaluations;
-        found.near_miss |= six.near_miss;
+        six.near_misses().iter().for_each(|set| found.push_near_miss(without(set).1));
         found
     }
 }

@@ -66,7 +66,6 @@ impl GivenJoint {
         let six = self.others.solve_displacement(&rest, &rest);
         let mut seven = Branches::none();
         (seven.doubt, seven.singular, seven.evaluations) = (six.doubt, six.singular, six.evaluations);
-        seven.near_miss = six.near_miss;
         let turns = self.joint.motion == AxisKind::Turns;
         let value = if turns { Angle::by(value).angle() } else { value };
         for ([a, b, c, d, e, f], error) in six.iter().copied().zip(six.errors()) {

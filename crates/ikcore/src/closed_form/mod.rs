@@ -51,7 +51,7 @@ mod wrist;
 pub(crate) use angle_range::MOVED_BY_POLISHING;
 pub(crate) use arm::{ClosedFormArm, NoClosedForm};
 pub(crate) use arm_branches::ArmBranches;
-pub(crate) use branches::{BranchError, Doubt, MOST as MOST_CONFIGURATIONS, MOST_JOINTS};
+pub(crate) use branches::{BranchFit, Doubt, MOST as MOST_CONFIGURATIONS, MOST_JOINTS};
 pub(crate) use configurations::ArmConfigurations;
 pub(crate) use parameter_arcs::ParameterArcs;
 pub(crate) use pose_family::PoseFamily;

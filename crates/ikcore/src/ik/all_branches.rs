@@ -10,7 +10,7 @@ use super::solutions::Solutions;
 use super::weak_direction::WeakDirection;
 use super::whole_turns::NearestTurns;
 use crate::closed_form::{
-    ArmBranches, BranchError, Doubt, FamilyLimits, MOST_JOINTS, MOVED_BY_POLISHING, PoseFamily, VERIFIED,
+    ArmBranches, BranchFit, Doubt, FamilyLimits, MOST_JOINTS, MOVED_BY_POLISHING, PoseFamily, VERIFIED,
 };
 use crate::math::Frame;
 use crate::math::comparison::larger;
@@ -31,7 +31,8 @@ const LEAST_TOLERANCE: f64 = 1e-9;
 /// Change of the pose, in tolerances per rad or m, below which a direction is practically free.
 const ALMOST_FREE: f64 = 1.0;
 
-/// Change of the pose, in tolerances per rad or m, above which a branch is far from singular.
+/// Change of the pose, in tolerances per rad or m, above which a branch is far from singular: the tolerances admit no
+/// configuration more than about a milliradian or millimetre away from it.
 const FAR_FROM_FREE: f64 = 1e3;
 
 /// Change of the pose, in tolerances, up to which moving a branch inside its limits may still meet the target.
@@ -78,6 +79,7 @@ pub(super) fn all_branches(attempt: &mut Attempt<'_, '_>, reference: &[f64], red
         turns: NearestTurns::new(robot, bounds, reference),
         descent,
         verified_is_solved: tolerance.position.min(tolerance.rotation) >= VERIFIED,
+        widest: tolerance.position.max(tolerance.rotation).max(LEAST_TOLERANCE),
         may_reach_by_tolerance: is_wide(attempt),
         found: AllBranches {
             solutions: Solutions::new(robot.dof()),
@@ -131,6 +133,8 @@ struct BranchCollector<'a, 'm, 'p> {
     descent: LevenbergMarquardt,
     /// Whether the tolerances are no tighter than the verification of branches.
     verified_is_solved: bool,
+    /// Larger tolerance (m, rad).
+    widest: f64,
     /// Whether the tolerances may be met although no branch is inside the limits.
     may_reach_by_tolerance: bool,
     found: AllBranches,
@@ -168,8 +172,8 @@ impl BranchCollector<'_, '_, '_> {
         family.visit_within(limits, values, |branches| {
             self.attempt.budget.evaluations += branches.evaluations;
             self.found.singular |= branches.singular;
-            for (q, error) in branches.iter() {
-                let outside = self.take_inside(q, error);
+            for (q, fit) in branches.iter() {
+                let outside = self.take_inside(q, fit);
                 if AT_LIMIT < outside && outside < NEAR_LIMIT && self.found.solutions.is_empty() {
                     self.may_reach_by_tolerance = true;
                     self.take_by_descent(q);
@@ -185,10 +189,14 @@ impl BranchCollector<'_, '_, '_> {
     fn take_all(&mut self, pose: &Frame) -> Option<usize> {
         let branches = self.attempt.context.robot().branches(pose)?;
         self.take_branches(&branches);
-        self.may_reach_by_tolerance |= branches.near_miss;
+        for q in branches.near_misses() {
+            self.may_reach_by_tolerance = true;
+            self.take_by_descent(q);
+        }
         if self.found.solutions.is_empty() && self.may_reach_by_tolerance {
             self.take_within_tolerance();
         }
+        self.found.complete &= !self.may_reach_by_tolerance;
         if branches.doubt == Doubt::Anywhere && !self.found.singular {
             self.take_scattered();
         }
@@ -200,8 +208,11 @@ impl BranchCollector<'_, '_, '_> {
         self.found.complete &= branches.doubt != Doubt::Anywhere;
         self.found.singular |= branches.singular;
         let is_sure = branches.doubt == Doubt::None && !branches.singular;
-        for (q, error) in branches.iter() {
-            let outside = self.take_inside(q, error);
+        for (q, fit) in branches.iter() {
+            let outside = self.take_inside(q, fit);
+            if outside <= AT_LIMIT {
+                self.admit_curve(fit.stiffness);
+            }
             if !is_sure || AT_LIMIT < outside && outside < MOVED_BY_POLISHING {
                 self.take_nearby(q, outside);
             }
@@ -210,7 +221,7 @@ impl BranchCollector<'_, '_, '_> {
 
     /// Takes a branch if it is inside the limits. Returns its largest excess over them (rad, m).
     #[inline]
-    fn take_inside(&mut self, q: &[f64], error: BranchError) -> f64 {
+    fn take_inside(&mut self, q: &[f64], fit: BranchFit) -> f64 {
         let mut near = [0.0; MOST_JOINTS];
         let near = &mut near[..q.len()];
         let mut outside = 0.0;
@@ -223,7 +234,7 @@ impl BranchCollector<'_, '_, '_> {
             return outside;
         }
         if self.verified_is_solved {
-            let BranchError { position, rotation } = error;
+            let BranchFit { position, rotation, .. } = fit;
             self.found.solutions.push(near, TipError { position, rotation });
         } else {
             // Rounding in the closed form may exceed the tolerances.
@@ -231,6 +242,15 @@ impl BranchCollector<'_, '_, '_> {
             self.take_by_descent(near);
         }
         outside
+    }
+
+    /// Withdraws the claim that no solution is missing if the tolerances admit a curve of configurations through a branch of
+    /// this `stiffness` (m, rad).
+    #[inline]
+    fn admit_curve(&mut self, stiffness: f64) {
+        let change = stiffness / self.widest;
+        self.found.complete &= change > FAR_FROM_FREE;
+        self.found.singular |= change < ALMOST_FREE;
     }
 
     /// Takes solutions near a branch: close to a singularity the tolerances admit a curve of configurations, part of which may
@@ -286,7 +306,6 @@ impl BranchCollector<'_, '_, '_> {
     /// reach, or just outside the poses that an arm with few joints can reach.
     #[cold]
     fn take_within_tolerance(&mut self) {
-        self.found.complete = false;
         let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
         if !self.attempt.problem.assess(&q).score.solved {
             return;

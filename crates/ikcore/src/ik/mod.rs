@@ -4,11 +4,12 @@
 //! target: problem, random numbers, monitor, `budget`. `first_branch` answers poses by the closed form and takes the branch
 //! chosen by `preference`. `nearest`, `best` and `clear` choose among several solutions, `checked_tasks` holds the tasks of several
 //! tips. `goal_descent` moves a solution along its self-motion, `self_motion` traces the whole of it, `solve_all` collects
-//! solutions (`all_branches` by the closed form). [`problem`](crate::problem) explains why a target was missed.
+//! solutions (`all_branches` by the closed form; `branches_by_part` for control loops). [`problem`](crate::problem) explains why a target was missed.
 
 mod all_branches;
 mod attempt;
 mod best;
+mod branches_by_part;
 mod budget;
 mod checked_tasks;
 mod clear;
@@ -30,6 +31,7 @@ mod solve_options;
 mod weak_direction;
 mod whole_turns;
 
+pub(crate) use branches_by_part::next_branches;
 pub use checked_tasks::tip_errors;
 pub(crate) use checked_tasks::{checked_tasks, reduce};
 pub(crate) use context::{Query, SolveContext};

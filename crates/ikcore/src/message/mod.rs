@@ -10,6 +10,12 @@ use std::ops::Deref;
 
 pub use setting::Setting;
 
+/// Returns a name after its indefinite article: a Box, an Ellipsoid.
+pub(crate) fn with_article(name: &str) -> String {
+    let vowel = name.starts_with(|first: char| "aeioAEIO".contains(first));
+    format!("{} {name}", if vowel { "an" } else { "a" })
+}
+
 /// Sentence, or a part of one. Its text has the plain words of its settings.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Message(Box<Content>);
@@ -134,6 +140,12 @@ impl PartialEq<String> for Message {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn articles_follow_the_first_letter() {
+        let written = ["Box", "Ellipsoid", "octree", "union", ""].map(with_article);
+        assert_eq!(written, ["a Box", "an Ellipsoid", "an octree", "a union", "a "]);
+    }
 
     #[test]
     fn each_interface_spells_the_settings_in_its_own_words() {

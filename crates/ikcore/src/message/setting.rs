@@ -30,6 +30,8 @@ pub enum Setting {
     RaiseInvalid,
     /// Approach from rest to a moving path.
     Ease,
+    /// Way back of a tracked arm to a configuration on its target.
+    Recover,
     /// Motion out of a contact first.
     FreeStart,
     /// Joint velocity at the start.
@@ -97,6 +99,7 @@ impl fmt::Display for Setting {
             Self::AllTurns => "taking all whole turns",
             Self::RaiseInvalid => "make invalid items an error",
             Self::Ease => "an eased start",
+            Self::Recover => "recovery",
             Self::FreeStart => "free_start",
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",

@@ -7,6 +7,7 @@ use super::model::Robot;
 use super::off_chain::OffChainLink;
 use super::pair_rule::PairRule;
 use crate::error::{Error, Result};
+use crate::message::with_article;
 use crate::shape::Shape;
 
 impl Robot {
@@ -25,8 +26,8 @@ impl Robot {
         touch.iter().try_for_each(|link| self.link_number(link).map(|_| ()))?;
         if !shape.can_be_carried() {
             let problem = format!(
-                "a {} cannot be attached: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh can",
-                shape.name()
+                "{} cannot be attached: a Sphere, Box, Capsule, Cylinder, Ellipsoid or ConvexMesh can",
+                with_article(shape.name())
             );
             return Err(Error::InvalidObstacle { problem });
         }

@@ -3,6 +3,7 @@
 use super::model::Robot;
 use super::parts::Parts;
 use crate::error::{Error, Result};
+use crate::message::with_article;
 use crate::stored;
 
 impl Robot {
@@ -26,7 +27,7 @@ impl Robot {
         for body in robot.bodies() {
             robot.link_number(&body.link)?;
             if !body.shape.can_be_carried() {
-                let problem = format!("a {} is no body of a robot", body.shape.name());
+                let problem = format!("{} is no body of a robot", with_article(body.shape.name()));
                 return Err(Error::InvalidObstacle { problem });
             }
         }

@@ -15,7 +15,7 @@ use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, norm};
 use crate::objective::Point;
 use crate::obstacle::{
-    ClearSpace, Coming, ComingRows, JointMotion, MotionCertificate, NearRow, NearRows, RequiredDistance,
+    ClearSpace, Coming, ComingRows, Edge, JointMotion, MotionCertificate, NearRow, NearRows, RequiredDistance,
 };
 
 /// Clearance beyond the margin at the rest configuration (m), desired and required: leaves room for the certificate.
@@ -171,6 +171,17 @@ impl Around {
             only_parts: true,
         };
         self.check.is_clear(self.space.scene(), motion, end, &kept)
+    }
+
+    /// Whether the straight line of the joints between two configurations is certified clear of everything where it is now.
+    pub fn certifies_line(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let kept = RequiredDistance {
+            at_rest: self.near.rows(),
+            tolerance_band: ROOM,
+            only_parts: true,
+            ..RequiredDistance::constant(self.space.margin())
+        };
+        self.check.is_clear(self.space.scene(), &Edge { from, to }, 1.0, &kept)
     }
 
     /// Sets the rows of a command that ends in `rest` after `stop_ticks`; overlapping pairs become rows to separate them.

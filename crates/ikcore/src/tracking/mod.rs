@@ -21,6 +21,7 @@
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | progress towards its target of an arm held by obstacles |
+//! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and what a step says of it |
 //! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
 //! | `tip_paths`, `current_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
@@ -31,6 +32,7 @@
 //! | `controller` | controllers, which only command and observe |
 
 mod around_arm;
+mod away;
 mod command_and_stop;
 mod commanded_motion;
 mod constrained_step;
@@ -58,7 +60,9 @@ mod tip_pose;
 mod track;
 mod track_options;
 mod tracked_arm;
+mod way_back;
 
+pub use away::{Away, Way};
 pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};

@@ -67,9 +67,8 @@ pub(super) struct ArmProgress {
 impl ArmProgress {
     /// Initial progress of an arm with these limits.
     pub fn new(limits: &Limits) -> Self {
-        let patience_factor = (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT);
         Self {
-            patience_factor,
+            patience_factor: patience_factor(limits),
             admitted: Admitted::All,
             before: None,
             progress_made: 0.0,
@@ -136,17 +135,24 @@ impl ArmProgress {
     }
 }
 
+/// Times as long as a quick arm that an arm with these limits takes.
+pub(super) fn patience_factor(limits: &Limits) -> f64 {
+    (time_of_turn(limits) / QUICK_TURN).clamp(1.0, MOST_PATIENT)
+}
+
 /// Approximate time in which the median joint turns by 1 rad (m) from rest to rest (s); locked joints do not count.
 fn time_of_turn(limits: &Limits) -> f64 {
-    let limit = |field: Field, j: usize| limits.field(field).map_or(f64::INFINITY, |profiles| profiles[j].at(0.0));
-    let time = |j: usize| {
-        let [velocity, acceleration, jerk] =
-            [Field::Velocity, Field::Acceleration, Field::Jerk].map(|field| limit(field, j).max(0.0));
-        1.0 / velocity + 2.0 * (1.0 / acceleration).sqrt() + (32.0 / jerk).cbrt()
-    };
+    let time = |j: usize| time_of_way(1.0, limits, j, 0.0);
     let mut times: Point = (0..limits.dof()).map(time).filter(|time| time.is_finite()).collect();
     times.sort_unstable_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Time in which joint `j` moves by `way` (rad, m) from rest to rest (s), at most, under its limits at `time` (s).
+pub(super) fn time_of_way(way: f64, limits: &Limits, j: usize, time: f64) -> f64 {
+    let limit = |field: Field| limits.field(field).map_or(f64::INFINITY, |profiles| profiles[j].at(time)).max(0.0);
+    let [velocity, acceleration, jerk] = [Field::Velocity, Field::Acceleration, Field::Jerk].map(limit);
+    way / velocity + 2.0 * (way / acceleration).sqrt() + (32.0 * way / jerk).cbrt()
 }
 
 /// Whether resting at `to` instead of `from` lowers the error by a fraction of the distance between them.

@@ -320,6 +320,11 @@ impl SafetyFilter {
         true
     }
 
+    /// Whether the straight line of the joints between two configurations is certified clear.
+    pub fn certifies_line(&mut self, from: &[f64], to: &[f64]) -> bool {
+        self.around.as_mut().is_none_or(|around| around.certifies_line(from, to))
+    }
+
     /// Whether obstacles changed the last goal.
     pub fn goal_is_held(&self) -> bool {
         self.goal_is_held

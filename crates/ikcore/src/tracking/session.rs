@@ -3,14 +3,17 @@
 use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
+use super::away::Way;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::safety_filter::{FilterOutcome, FilterWork, SafetyFilter};
 use super::step::Step;
+use super::step_context::StepContext;
 use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
+use super::way_back::{EndOfTick, Next, WayBack};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{JointOutside, Limits};
@@ -22,7 +25,7 @@ use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Goals, Target, TipError};
+use crate::task::{Aims, Assessment, Goals, Target, TipError};
 
 /// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
 const BISECTIONS: usize = 10;
@@ -37,6 +40,8 @@ pub struct Session {
     surroundings: Surroundings,
     /// Safety filter, present if collisions are to be avoided or pairs of tips may be held.
     safety: Option<Box<SafetyFilter>>,
+    /// Way back of an arm that comes no nearer to its target; `None` for other rules, and tasks with a region.
+    way_back: Option<Box<WayBack>>,
     /// Whether the arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -65,7 +70,11 @@ impl Session {
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, &arm.limits)?)) } else { None };
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
-        Ok(Self { arm, rule, running, goals, surroundings, safety, stopping: false, seed, rng })
+        let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
+            arm.robot.solves_at_once(); // prepares the closed form
+            Box::new(WayBack::new(&arm.limits, options.recover))
+        });
+        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, stopping: false, seed, rng })
     }
 
     /// Accepted configuration (n,).
@@ -168,7 +177,8 @@ impl Session {
         };
         let status = if self.is_clear(&self.arm.q) { status } else { Status::InCollision };
         let (position, error) = (self.arm.robot.tip_position(&self.arm.q), error.into());
-        Step { status, error, position, evaluations: 1, iterations: 0, inside_limits: true, interrupted: false }
+        let (evaluations, iterations) = (1, 0);
+        Step { status, error, position, evaluations, iterations, inside_limits: true, away: None, interrupted: false }
     }
 
     /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is
@@ -211,10 +221,17 @@ impl Session {
         let status = self.status(&found, held);
         if !found.interrupted {
             self.arm.accept(&found.q, found.assessment.score.value);
+            self.look_for_way_back(&mut found, monitor);
         }
+        let away = self.way_back.as_ref().and_then(|way_back| way_back.away());
+        let status = if status == Status::Improved && away.is_some_and(|away| away.way != Way::Taken) {
+            Status::Capped
+        } else {
+            status
+        };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
-        Ok(Step { status, error, position, evaluations, iterations, inside_limits, interrupted })
+        Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, interrupted })
     }
 
     /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule.
@@ -223,7 +240,7 @@ impl Session {
         let asked = std::mem::take(&mut arrival.tips);
         if self.arm.tasks.read(&self.arm.robot, &asked, &mut arrival.targets)? {
             self.arm.targets.begin_anew();
-            self.running.forget();
+            self.follow_from_here();
             self.arm.last_value = None;
         }
         Ok(())
@@ -250,15 +267,43 @@ impl Session {
 
     fn begin_stopping(&mut self) {
         self.stopping = true;
-        self.running.forget();
+        self.follow_from_here();
         self.arm.targets.expect_new();
+    }
+
+    /// Follows the target from where the arm is, without a way back.
+    fn follow_from_here(&mut self) {
+        match &mut self.way_back {
+            Some(way_back) if way_back.is_returning() => {
+                way_back.restart();
+                self.start_rule();
+            }
+            _ => self.running.forget(),
+        }
+    }
+
+    /// Ends a tick for the way back, and turns the arm towards it or back to the target.
+    #[inline]
+    fn look_for_way_back(&mut self, found: &mut TickResult, monitor: &mut dyn Monitor) {
+        let Some(way_back) = self.way_back.as_mut().filter(|_| !self.stopping) else { return };
+        let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
+        let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
+        let next = way_back.end_tick(end, self.safety.as_deref_mut());
+        found.evaluations += way_back.evaluations();
+        match next {
+            Next::Continue => {}
+            Next::HeadFor(q) => self.running.head_for(&q),
+            Next::Arrived if self.arm.limited.is_some() => {}
+            Next::Arrived | Next::Follow => self.start_rule(),
+        }
     }
 
     fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
         let (context, targets) = (self.arm.context(), &self.arm.targets);
         let Some((task, target)) = context.aims.iter().next() else { return TickResult::at(context.q) };
         let (criterion, goals, rng) = (&task.criterion, &mut self.goals, &mut self.rng);
-        let tick = Tick { context, target, criterion, goals, targets, sampled_ago, rng, monitor };
+        let most_evaluations = self.way_back.as_ref().map_or(usize::MAX, |way_back| way_back.left_to_rule());
+        let tick = Tick { context, target, criterion, goals, targets, most_evaluations, sampled_ago, rng, monitor };
         self.running.advance(tick, self.safety.as_deref_mut())
     }
 
@@ -284,6 +329,8 @@ impl Session {
             _ if held || self.goal_is_held() => Status::HeldByObstacle,
             _ if let Some(status) = self.arm.given_up(&found.assessment.error) => status,
             Some(last) if value >= last => Status::Capped,
+            // Other rules may take steps as short as these.
+            _ if self.way_back.is_some() && self.arm.rests_at(&found.q) => Status::Capped,
             _ => Status::Improved,
         }
     }
@@ -297,7 +344,11 @@ impl Session {
     /// obstacles or other links caused the change.
     fn filter(&mut self, found: &mut TickResult) -> bool {
         let Some(safety) = &mut self.safety else { return false };
-        let FilterOutcome { changed, by_obstacles } = safety.filter(&self.arm.context(), &mut found.q);
+        let context = self.arm.context();
+        // On a way back the distance from the target shows no progress: the targets do not judge the commands.
+        let is_returning = self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
+        let context = if is_returning { StepContext { aims: Aims::default(), ..context } } else { context };
+        let FilterOutcome { changed, by_obstacles } = safety.filter(&context, &mut found.q);
         if changed {
             self.arm.assess(found);
             if self.arm.limited.is_none() {
@@ -353,6 +404,9 @@ impl Session {
             self.safety = None;
         }
         self.surroundings = surroundings;
+        if let Some(way_back) = &mut self.way_back {
+            way_back.note_replaced();
+        }
         Ok(())
     }
 
@@ -384,7 +438,8 @@ impl Session {
         self.arm.accept(q, score.value);
         self.start_rule();
         let (position, error) = (self.arm.robot.tip_position(q), error.into());
-        Ok(Step { status, error, position, evaluations: 1, iterations: 0, inside_limits, interrupted: false })
+        let (evaluations, iterations) = (1, 0);
+        Ok(Step { status, error, position, evaluations, iterations, inside_limits, away: None, interrupted: false })
     }
 
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
@@ -420,6 +475,9 @@ impl Session {
     pub fn reset(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
         self.arm.reset(q, [qd, qdd])?;
         self.stopping = false;
+        if let Some(way_back) = &mut self.way_back {
+            way_back.restart();
+        }
         self.start_rule();
         if let Some(safety) = &mut self.safety {
             safety.forget();

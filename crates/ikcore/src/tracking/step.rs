@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::away::{Away, Way};
 use crate::limits::JointOutside;
 use crate::message::{Message, message};
 use crate::obstacle::{Contact, Measured};
@@ -14,7 +15,7 @@ pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
     /// holds the arm back, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
-    /// is met, [`Status::Improved`] if nearer than before, else [`Status::Capped`].
+    /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,
@@ -26,14 +27,16 @@ pub struct Step {
     pub iterations: usize,
     /// Whether this tick can bring every joint back within its position limits and slow it down to its velocity limit.
     pub inside_limits: bool,
+    /// What keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
+    pub away: Option<Away>,
     /// Whether the monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
 }
 
 impl Step {
-    /// Returns a sentence on the outcome, with advice.
+    /// Returns a sentence on the outcome, with advice. It numbers joints, the first being 1.
     pub fn message(&self) -> Message {
-        self.message_with(self.status.advice(), &[])
+        self.message_with(self.status.advice(), &[], number)
     }
 
     /// Returns the advice where the nearest contact is known. An arm that is in collision with what a sensor measured is
@@ -44,13 +47,22 @@ impl Step {
     }
 
     /// Returns [`message`](Self::message) with this `advice`, of an arm that began with the joints `outside` their limits.
-    pub fn message_with(&self, advice: impl Into<Message>, outside: &[JointOutside]) -> Message {
+    /// `joint` names each joint by its index.
+    pub fn message_with(
+        &self,
+        advice: impl Into<Message>,
+        outside: &[JointOutside],
+        joint: impl Fn(usize) -> String,
+    ) -> Message {
         let error = &self.error;
         let limits = match (outside, self.inside_limits) {
             ([], true) => String::new(),
             ([], false) => "; a joint is outside its limits and returns".into(),
             _ => JointOutside::in_words(outside, "began"),
         };
+        if let (Status::Improved | Status::Capped, Some(away)) = (self.status, self.away) {
+            return away.message(error, &limits, joint);
+        }
         let how = match self.status {
             Status::Solved => return format!("within the tolerances, {error} away{limits}").into(),
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
@@ -61,6 +73,15 @@ impl Step {
             Status::HeldByObstacle => "held back by an obstacle or another link",
             _ => "no nearer than in the tick before",
         };
-        message![format!("{how}, {error} away{limits}: "), advice]
+        let known = match self.away {
+            Some(Away { way: Way::Blocked, .. }) => format!("; {}", Away::NO_WAY),
+            _ => String::new(),
+        };
+        message![format!("{how}, {error} away{limits}{known}: "), advice]
     }
+}
+
+/// Number of joint `j`, the first being 1.
+fn number(j: usize) -> String {
+    (j + 1).to_string()
 }

@@ -10,7 +10,7 @@ use crate::robot::Robot;
 use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct TrackOptions {
     /// Rule that runs in every tick.
     pub rule: TickRule,
@@ -35,8 +35,30 @@ pub struct TrackOptions {
     pub ease: bool,
     /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
+    /// Whether an arm that comes no nearer to its target, though a configuration on it is known, goes there by a motion of its
+    /// joints; true by default. It is for the library's own rule, and tasks without a region.
+    pub recover: bool,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
+}
+
+impl Default for TrackOptions {
+    fn default() -> Self {
+        Self {
+            rule: TickRule::default(),
+            task: None,
+            goals: vec![],
+            tolerance: Tolerance::default(),
+            limits: None,
+            limit_at: LimitAt::default(),
+            target_filter: None,
+            timeout: None,
+            ease: false,
+            surroundings: Surroundings::default(),
+            recover: true,
+            seed: 0,
+        }
+    }
 }
 
 impl TrackOptions {

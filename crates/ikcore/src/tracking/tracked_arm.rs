@@ -19,6 +19,9 @@ use crate::robot::Robot;
 use crate::solver::Status;
 use crate::task::{Aims, SquaredError};
 
+/// Speed below which a joint rests (rad/s, m/s).
+const REST: f64 = 1e-4;
+
 /// Tracked arm in motion, tick by tick.
 #[derive(Debug)]
 pub(super) struct TrackedArm {
@@ -80,6 +83,11 @@ impl TrackedArm {
         };
         arm.require_in_region("start", &q)?;
         Ok(arm)
+    }
+
+    /// Whether all joints rest if they move to `q` in this tick.
+    pub fn rests_at(&self, q: &[f64]) -> bool {
+        q.iter().zip(&self.q).all(|(to, from)| (to - from).abs() <= REST * self.dt)
     }
 
     /// Inputs of the next step.

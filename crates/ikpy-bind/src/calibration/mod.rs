@@ -85,7 +85,7 @@ fn calibrate(
     let sigma = sigma.map(|sigma| read_sigma(sigma, &measured)).transpose()?;
     let suggestion = SuggestionOptions {
         count: count("suggest", suggest)?,
-        surroundings: read_surroundings(obstacles, margin, None)?,
+        surroundings: read_surroundings(robot, obstacles, margin, None)?,
         seed: count("seed", seed)?,
     };
     let options = CalibrationOptions { fit: read_fit(fit, camera.is_some())?, sigma, robust, suggestion };

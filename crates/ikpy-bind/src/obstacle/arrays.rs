@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{Array, array, copied, matrix3, shape_text, summary, table};
 use crate::error::invalid;
+use crate::signals::check_signals_at;
 
 /// A vector stored by a class; Python gets a read-only array.
 #[derive(Clone, Copy)]
@@ -66,6 +67,7 @@ pub(super) fn read_faces(value: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
         return Err(invalid(format!("faces: expected shape (t, 3), got {}", shape_text(numbers.shape()))));
     };
     let index = |(i, number): (usize, &f64)| {
+        check_signals_at(value.py(), i)?;
         let whole = number.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(number);
         let wrong = || invalid(format!("face {}: expected indices of vertices, from 0, got {number}", i / 3));
         if whole { Ok(*number as u32) } else { Err(wrong()) }

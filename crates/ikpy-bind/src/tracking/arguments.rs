@@ -20,6 +20,7 @@ pub struct TrackArguments<'a, 'py> {
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub surroundings: Surroundings,
+    pub recover: bool,
     pub seed: i128,
     pub limit_at: &'a str,
     pub start_slack: Option<&'a Bound<'py, PyAny>>,
@@ -38,6 +39,7 @@ impl TrackArguments<'_, '_> {
             surroundings: self.surroundings,
             ease: false,
             start_slack: read_slack(self.start_slack)?,
+            recover: self.recover,
             limit_at: self.limit_at.parse::<LimitAt>().map_err(raise)?,
             seed: count("seed", self.seed)?,
             ..TrackOptions::default()

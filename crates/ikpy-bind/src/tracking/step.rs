@@ -43,6 +43,8 @@ pub struct PyStep {
     outside: Vec<JointOutside>,
     /// Errors by tip.
     tips: TipErrors,
+    /// Names of the joints, if the message may name some.
+    joints: Vec<String>,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Names the joints that limits of zero lock.
@@ -117,7 +119,8 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), &self.outside);
+        let around = self.around();
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, around, &self.outside, &self.joints);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
         pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
@@ -134,10 +137,10 @@ impl PyStep {
         lock: Option<String>,
         drift: Option<String>,
     ) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around, outside): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _) =
+        let (core, q, qd, elapsed, around, outside, joints): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _, _) =
             from_bytes("step", bytes).map_err(raise)?;
         let tips = TipErrors::restored(tips)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside);
+        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside).naming(joints);
         let lock = lock.map(|lock| Arc::new(lock.into()));
         Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
     }
@@ -155,6 +158,7 @@ impl PyStep {
             elapsed,
             outside: vec![],
             tips: TipErrors::unnamed(),
+            joints: vec![],
             among: None,
             lock: None,
             drift: None,
@@ -177,6 +181,11 @@ impl PyStep {
         Self { drift: drift.map(|drift| drift.to_string()), ..self }
     }
 
+    /// Adds the names of the joints.
+    pub fn naming(self, joints: Vec<String>) -> Self {
+        Self { joints, ..self }
+    }
+
     /// Adds the clear space of an arm, and its configuration `q`.
     pub fn among(self, space: Option<Arc<ClearSpace<'static>>>, q: Vec<f64>) -> Self {
         Self { among: space.map(|space| (space, q)), ..self }
@@ -194,12 +203,15 @@ impl PyStep {
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        let advice = match (&self.lock, nearest) {
-            (Some(lock), _) if self.core.status == Status::Capped => Message::clone(lock),
+        let lock = self.lock.as_ref().filter(|_| self.core.status == Status::Capped);
+        let advice = match (lock, nearest) {
+            (Some(lock), _) => Message::clone(lock),
             (_, Some(nearest)) => self.core.advice_near(&nearest.contact),
             _ => self.core.status.advice(),
         };
-        let message = self.core.message_with(advice, &self.outside);
+        // A lock is the reason why the arm stays away.
+        let step = if lock.is_some() { Step { away: None, ..self.core } } else { self.core };
+        let message = step.message_with(advice, &self.outside, |j| self.joints.get(j).cloned().unwrap_or_default());
         let message = match &self.drift {
             Some(drift) => format!("{}; {drift}", said(&message)).into(),
             None => message,

@@ -228,6 +228,8 @@ impl PyTrackResult {
 ///         inside within its limits, see `TrackResult.start_outside`. None: 5 degrees, 5 mm for joints that slide.
 ///     ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
 ///         that meets the moving path, after which the arm is on it. The tip is off the path until then.
+///     recover: whether an arm that comes no nearer to the path, at a joint limit or in a singular configuration, goes to a
+///         configuration on it if one is known, as in `Tracker`.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
 ///
 /// Returns:
@@ -251,9 +253,9 @@ impl PyTrackResult {
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false,
+                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, recover=true,
                     start_slack=None, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, start_slack=None, progress=None)")]
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -273,6 +275,7 @@ pub fn track(
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ease: bool,
+    recover: bool,
     start_slack: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyTrackResult> {
@@ -291,7 +294,7 @@ pub fn track(
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
-    let read = TrackArguments { rule, only, goals, surroundings, seed, limit_at, start_slack };
+    let read = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };

@@ -59,6 +59,9 @@ use crate::units;
 ///     start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
 ///         there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
 ///         Rounding is taken off in any case.
+///     recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
+///         configuration on the target if one is known: by a motion of the joints inside all limits and, with obstacles, along
+///         a clear line. It is for the model-based rule, and tasks without a region. False: the arm stays, and `message` says so.
 ///
 /// For example:
 ///
@@ -98,8 +101,8 @@ impl PyTracker {
     #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
                         margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
-                        start_slack=None),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None)")]
+                        start_slack=None, recover=true),
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -119,6 +122,7 @@ impl PyTracker {
         target_filter: Option<&Bound<'_, PyAny>>,
         timeout: Option<f64>,
         start_slack: Option<&Bound<'_, PyAny>>,
+        recover: bool,
     ) -> PyResult<Self> {
         let (py, arm) = (robot.py(), &robot.get().core);
         limits.map_or(Ok(()), |limits| limits.require_no_functions("Tracker", "track"))?;
@@ -131,7 +135,7 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, seed, limit_at, start_slack };
+        let asked = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
@@ -221,9 +225,12 @@ impl PyTracker {
         let motion = [session.q().to_vec(), session.qd().to_vec()];
         let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
         let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
+        let names = || session.robot().joints().iter().map(|joint| joint.name.clone()).collect();
+        let joints = if core.away.is_some() { names() } else { vec![] };
         let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
-        Ok(step.among(space, q).of_tips(tips).led_from(outside).of_locked(lock).of_drifted_target(drift))
+        let step = step.among(space, q).of_tips(tips).naming(joints);
+        Ok(step.led_from(outside).of_locked(lock).of_drifted_target(drift))
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

@@ -3,10 +3,11 @@
 mod angles;
 mod polish;
 mod residuals;
+mod stiffness;
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
-use crate::closed_form::branches::{BranchError, Branches, Candidates};
+use crate::closed_form::branches::{BranchFit, Branches, Candidates};
 use crate::closed_form::configurations::AxisColumns;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, Baseline, by_instructions};
@@ -20,8 +21,8 @@ pub(crate) const VERIFIED: f64 = 3.0 * polish::TOLERANCE;
 /// larger errors in the angles.
 const GOOD: f64 = 1e-12;
 
-/// Residual of a rejected candidate (m, rad) below which a pose within a caller's tolerances may have a solution.
-const NEARLY: f64 = 1e-5;
+/// Residual of a rejected candidate (m, rad) below which it is a near miss: twice the tolerances that count as narrow.
+const NEARLY: f64 = 2e-5;
 
 /// Largest joint difference (rad, m) between branches that count as one: a double root.
 const SAME: f64 = 1e-6;
@@ -74,7 +75,7 @@ impl<const N: usize> Verifier<N> {
             let angles = angles::angles::<A, N, LANES>(&self.slides, candidates, first);
             for lane in 0..LANES.min(candidates.count - first) {
                 let set = std::array::from_fn(|k| angles[k][lane]);
-                self.accept(target, residuals.worst[lane], set, residuals.error(lane), &mut found);
+                self.accept(target, residuals.worst[lane], set, residuals.fit(lane), &mut found);
             }
             first += LANES;
         }
@@ -96,9 +97,9 @@ impl<const N: usize> Verifier<N> {
     }
 
     #[inline(always)]
-    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], error: BranchError, found: &mut Branches<N>) {
+    fn accept(&self, target: &Frame, residual: f64, set: [f64; N], fit: BranchFit, found: &mut Branches<N>) {
         if residual <= GOOD {
-            push_new(set, error, &self.slides, found);
+            push_new(set, fit, &self.slides, found);
         } else if residual <= self.worth_polishing {
             self.accept_polished(target, set, found);
         }
@@ -107,8 +108,9 @@ impl<const N: usize> Verifier<N> {
     #[cold]
     fn accept_polished(&self, target: &Frame, set: [f64; N], found: &mut Branches<N>) {
         match polish::polished(&self.chain, target, set, &mut found.evaluations) {
-            Ok((set, error)) => push_new(set, error, &self.slides, found),
-            Err(residual) => found.near_miss |= residual < NEARLY,
+            Ok((set, fit)) => push_new(set, fit, &self.slides, found),
+            Err((residual, set)) if residual < NEARLY => found.push_near_miss(set),
+            Err(_) => {}
         }
     }
 }
@@ -129,12 +131,12 @@ by_instructions! {
 
 /// Adds a branch unless it is listed already.
 #[inline(always)]
-fn push_new<const N: usize>(set: [f64; N], error: BranchError, slides: &[bool; N], found: &mut Branches<N>) {
+fn push_new<const N: usize>(set: [f64; N], fit: BranchFit, slides: &[bool; N], found: &mut Branches<N>) {
     let near = |a: f64, b: f64, slides: bool| {
         let apart = (a - b).abs();
         apart < SAME || !slides && std::f64::consts::TAU - apart < SAME
     };
     if !found.iter().any(|other| (0..N).all(|k| near(other[k], set[k], slides[k]))) {
-        found.push(set, error);
+        found.push(set, fit);
     }
 }

@@ -1,10 +1,12 @@
 //! Newton's method from a candidate with a small error.
 
 use super::residuals::difference;
+use super::stiffness::{compliance, stiffness};
 use crate::closed_form::axis_chain::{AxisChain, AxisKind};
-use crate::closed_form::branches::BranchError;
+use crate::closed_form::branches::BranchFit;
 use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
+use crate::math::real::{One, Real};
 use crate::math::vector::{dot, norm};
 use crate::math::vector3::{Vector, add, cross, scaled, sub};
 
@@ -13,7 +15,8 @@ pub const TOLERANCE: f64 = 1e-10;
 
 const ITERATIONS: usize = 24;
 
-/// Refines `q` by Newton's method until the tip is at `target`, or returns the smallest residual (m, rad) on failure.
+/// Refines `q` by Newton's method until the tip is at `target`; on failure returns the smallest residual (m, rad) and where it
+/// was.
 ///
 /// Each step adds one to `evaluations`. Damping by the squared error keeps steps short near a double root, where the Jacobian
 /// is singular.
@@ -22,16 +25,17 @@ pub fn polished<const N: usize>(
     target: &Frame,
     mut q: [f64; N],
     evaluations: &mut usize,
-) -> Result<([f64; N], BranchError), f64> {
+) -> Result<([f64; N], BranchFit), (f64, [f64; N])> {
     let mut last = f64::INFINITY;
-    let mut best = (f64::INFINITY, q, BranchError::default());
+    let mut best = (f64::INFINITY, q, BranchFit::default());
     for _ in 0..ITERATIONS {
         *evaluations += 1;
         let (tip, columns) = jacobian(chain, &q);
         let residual = difference(&tip, target);
         let error = error(&tip, target);
         if residual < best.0 {
-            best = (residual, q, BranchError { position: norm(&error[..3]), rotation: norm(&error[3..]) });
+            let (position, rotation) = (norm(&error[..3]), norm(&error[3..]));
+            best = (residual, q, BranchFit { position, rotation, stiffness: stiffness_of(&columns) });
         }
         // Stop only when further steps no longer pay, even within the tolerance.
         if !(residual.is_finite()) || residual <= TOLERANCE && residual > 0.1 * last || residual < 1e-14 {
@@ -44,10 +48,8 @@ pub fn polished<const N: usize>(
     }
     let (residual, q, error) = best;
     let turns = |k: usize| chain.joints[k].motion == AxisKind::Turns;
-    if residual > TOLERANCE {
-        return Err(residual);
-    }
-    Ok((std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] }), error))
+    let q = std::array::from_fn(|k| if turns(k) { wrapped(q[k]) } else { q[k] });
+    if residual <= TOLERANCE { Ok((q, error)) } else { Err((residual, q)) }
 }
 
 /// Wraps the angle to (-pi, pi].
@@ -63,6 +65,11 @@ fn error(tip: &Frame, target: &Frame) -> [f64; 6] {
     let sum = (0..3).fold([0.0; 3], |sum: Vector, k| add(&sum, &cross(&tip.axes[k], &target.axes[k])));
     let [rx, ry, rz] = scaled(&sum, 0.5);
     [px, py, pz, rx, ry, rz]
+}
+
+fn stiffness_of<const N: usize>(columns: &[[f64; 6]; N]) -> f64 {
+    let of_columns = || compliance(&columns.map(|column| column.map(One::<Baseline>::of))).stored();
+    if N <= 6 { stiffness(of_columns()) } else { 0.0 }
 }
 
 /// Returns the tip frame and its geometric Jacobian, one column per joint.

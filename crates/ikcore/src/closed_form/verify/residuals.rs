@@ -1,10 +1,13 @@
 //! Forward kinematics of several candidates in SIMD lanes.
 
+use super::stiffness::{column, compliance, stiffness};
 use crate::closed_form::axis_chain::AxisChain;
-use crate::closed_form::branches::{BranchError, Candidates};
+use crate::closed_form::branches::{BranchFit, Candidates};
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
 use crate::math::arithmetic::Baseline;
+use crate::math::f64x4::F64x4;
+use crate::math::real::{Four, Real};
 use crate::math::vector3::{Vector, across};
 
 /// Number of candidates checked together.
@@ -35,13 +38,18 @@ pub struct Residuals {
     pub worst: Lanes,
     position: Lanes,
     rotation: Lanes,
+    compliance: Lanes,
 }
 
 impl Residuals {
-    /// Returns the position and rotation error of one candidate.
+    /// Returns the errors and the stiffness of one candidate.
     #[inline(always)]
-    pub fn error(&self, lane: usize) -> BranchError {
-        BranchError { position: self.position[lane].sqrt(), rotation: self.rotation[lane].sqrt() }
+    pub fn fit(&self, lane: usize) -> BranchFit {
+        BranchFit {
+            position: self.position[lane].sqrt(),
+            rotation: self.rotation[lane].sqrt(),
+            stiffness: stiffness(self.compliance[lane]),
+        }
     }
 }
 
@@ -58,6 +66,8 @@ pub fn residuals<A: Arithmetic, const N: usize>(
 ) -> Residuals {
     let tip = &frames.tip;
     let mut carried = [tip.origin, tip.axes[0], tip.axes[2]].map(|v| v.map(|entry| [entry; LANES]));
+    let mut columns = [[[Four::<A>::splat(0.0); 6]; N]; 2];
+    let halves = if candidates.count - first > 4 { 2 } else { 1 };
     for k in (0..N).rev() {
         let (mut cos, mut sin) = ([0.0; LANES], [0.0; LANES]);
         cos.copy_from_slice(&candidates.cos[k][first..first + LANES]);
@@ -71,12 +81,29 @@ pub fn residuals<A: Arithmetic, const N: usize>(
                 turn::<A>(v, &cos, &sin);
             }
         }
+        if N <= 6 {
+            for (half, columns) in columns.iter_mut().enumerate().take(halves) {
+                columns[k] = column(&carried.map(|v| v.map(|entry| four::<A>(&entry, half))), slides[k]);
+            }
+        }
         let frame = &frames.before[k];
         carried[0] = turned::<A>(frame, &carried[0], &frame.origin);
         carried[1] = turned::<A>(frame, &carried[1], &[0.0; 3]);
         carried[2] = turned::<A>(frame, &carried[2], &[0.0; 3]);
     }
-    compared(&mut carried, target)
+    let mut residuals = compared(&mut carried, target);
+    if N <= 6 {
+        for (half, columns) in columns.iter().enumerate().take(halves) {
+            residuals.compliance[4 * half..4 * half + 4].copy_from_slice(&compliance(columns).stored().0);
+        }
+    }
+    residuals
+}
+
+/// Returns the first or second four of eight lanes.
+#[inline(always)]
+fn four<A: Arithmetic>(lanes: &Lanes, half: usize) -> Four<A> {
+    Four::of(F64x4(std::array::from_fn(|w| lanes[4 * half + w])))
 }
 
 /// Subtracts the target from position, x axis and z axis.
@@ -108,7 +135,7 @@ fn compared(carried: &mut [[Lanes; 3]; 3], target: &Frame) -> Residuals {
         let sum = position[w] + of_x[w] + of_z[w];
         worst[w] = if sum.is_finite() { worst[w] } else { f64::INFINITY };
     }
-    Residuals { worst, position, rotation }
+    Residuals { worst, position, rotation, compliance: [f64::INFINITY; LANES] }
 }
 
 /// Returns a frame at `point` whose z axis is `axis`.

@@ -5,6 +5,7 @@ use roxmltree::Node;
 
 use super::xml;
 use crate::math::{Pose, pose};
+use crate::message::with_article;
 use crate::robot::LinkCapsule;
 use crate::shape::Shape;
 
@@ -55,7 +56,7 @@ pub(super) fn read(name: &str, link: Node) -> LinkCapsules {
             Some(primitive) => read.primitives.push(primitive),
             None => {
                 let mesh = mesh(name, collision, shape);
-                read.unread.push(UnreadShape { name: format!("a {tag} of link '{name}'"), mesh });
+                read.unread.push(UnreadShape { name: format!("{} of link '{name}'", with_article(tag)), mesh });
             }
         }
     }

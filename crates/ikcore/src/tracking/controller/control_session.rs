@@ -226,6 +226,7 @@ impl ControlSession {
             evaluations,
             iterations: evaluations,
             inside_limits: self.inside_limits,
+            away: None,
             interrupted: false,
         }
     }

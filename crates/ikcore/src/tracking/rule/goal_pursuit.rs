@@ -8,7 +8,7 @@
 use super::tick::{Tick, TickResult};
 use crate::ik::RankedDescent;
 use crate::math::vector::{distance, largest_difference};
-use crate::motion::{GoalSample, MovingGoal, Pursuit};
+use crate::motion::{GoalSample, JointState, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
 use crate::tracking::step_context::StepContext;
@@ -57,6 +57,18 @@ impl GoalPursuit {
     /// Drops the goal.
     pub(crate) fn forget(&mut self) {
         self.goal = None;
+    }
+
+    /// Makes `q` the goal, at rest.
+    pub(crate) fn head_for(&mut self, q: &[f64]) {
+        let at_rest = JointState::at_rest(q.len());
+        self.goal = Some(MovingGoal::of_arm(q, &at_rest, self.now, self.now + 1.0));
+        (self.since_held, self.nearest) = (None, None);
+    }
+
+    /// The goal, if there is one.
+    pub(crate) fn goal(&self) -> Option<&[f64]> {
+        self.goal.as_ref().map(MovingGoal::q)
     }
 
     /// Finds a sample of the goal if new targets have arrived, of age `tick.sampled_ago` (ticks) at the end of the tick.
@@ -250,7 +262,11 @@ impl GoalPursuit {
     fn descend(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
         let mut end = TickResult::at(&self.sample);
-        tick.descend(&mut end, positions, Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() });
+        tick.descend(
+            &mut end,
+            positions,
+            Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() },
+        );
         found.evaluations += end.evaluations;
         found.iterations += end.iterations;
         let [before, after] = [&self.sample, &end.q].map(|q| aims.assess(robot, q).score);

@@ -14,6 +14,7 @@
 mod any_solver;
 mod approach;
 mod goal_pursuit;
+mod joint_move;
 mod mid_step;
 mod tick;
 mod tick_rule;

@@ -25,6 +25,8 @@ pub(in crate::tracking) struct Tick<'a> {
     pub goals: &'a mut Goals,
     /// Targets received so far.
     pub targets: &'a TargetStream,
+    /// Largest evaluation budget of a descent, beside the rule's own: less while a way back takes its part of the tick.
+    pub most_evaluations: usize,
     /// Age of the new targets at the end of the tick, in ticks; `None` if none arrived in this tick.
     pub sampled_ago: Option<f64>,
     pub rng: &'a mut LazyRng,
@@ -43,6 +45,17 @@ impl Tick<'_> {
         let (Target::Pose(pose), [task]) = (self.target, aims.tasks) else { return None };
         let first = if robot.tip_count() == 1 { task.comes_first(self.target, robot.dof()) } else { None };
         Some((*pose, first?))
+    }
+
+    /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.
+    pub(super) fn fraction_within(&self, from: &[f64], to: &[f64]) -> f64 {
+        let [lower, upper] = self.context.ends();
+        let fraction = |j: usize| {
+            let way = to[j] - from[j];
+            let room = if way > 0.0 { upper[j] } else { lower[j] } - from[j];
+            if way == 0.0 { 1.0 } else { room / way }
+        };
+        (0..from.len()).map(fraction).fold(1.0, f64::min)
     }
 
     /// Motion of the first target during the tick.

@@ -2,6 +2,7 @@
 
 use super::any_solver;
 use super::goal_pursuit::GoalPursuit;
+use super::joint_move::JointMove;
 use super::mid_step::{self, MidStepState};
 use super::tick::{Tick, TickResult};
 use super::tip_step::TipStep;
@@ -31,6 +32,8 @@ pub(in crate::tracking) enum RunningRule {
     GoalPursuit(Box<GoalPursuit>),
     /// Variant of `MidStep` for several tips.
     TipStep(TipStep),
+    /// Way back to a configuration on the target; in place of `MidStep` and `TipStep`.
+    JointMove(JointMove),
     Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
 }
@@ -54,6 +57,11 @@ impl TickRule {
             Self::MidStep | Self::Solver(_) => Ok(()),
             Self::WeightedPseudoInverse(rule) => rule.validate_for(robot, dt),
         }
+    }
+
+    /// Whether the rule is the library's own, which a way back can follow.
+    pub(in crate::tracking) fn is_own(&self) -> bool {
+        *self == Self::MidStep
     }
 
     /// Whether the rule supports goals.
@@ -104,7 +112,24 @@ impl RunningRule {
         match self {
             Self::MidStep(memory) => memory.forget(),
             Self::GoalPursuit(pursuit) => pursuit.forget(),
-            Self::TipStep(_) | Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
+            Self::TipStep(_) | Self::JointMove(_) | Self::Solver(_) | Self::WeightedPseudoInverse(..) => {}
+        }
+    }
+
+    /// Makes `q`, a configuration on the target, the goal of the joints.
+    pub(crate) fn head_for(&mut self, q: &[f64]) {
+        match self {
+            Self::GoalPursuit(pursuit) => pursuit.head_for(q),
+            other => *other = Self::JointMove(JointMove::to(q)),
+        }
+    }
+
+    /// Goal of the joints, if they pursue one.
+    pub(crate) fn goal(&self) -> Option<&[f64]> {
+        match self {
+            Self::GoalPursuit(pursuit) => pursuit.goal(),
+            Self::JointMove(motion) => Some(motion.goal()),
+            Self::MidStep(_) | Self::TipStep(_) | Self::Solver(_) | Self::WeightedPseudoInverse(..) => None,
         }
     }
 
@@ -122,6 +147,7 @@ impl RunningRule {
                 pursuit.pursue(found, &tick)
             }
             Self::TipStep(step) => step.advance(tick),
+            Self::JointMove(motion) => motion.advance(&tick),
             Self::Solver(solver) => any_solver::advance(solver, tick),
             Self::WeightedPseudoInverse(rule, scratch) => weighted_pseudo_inverse::advance(rule, scratch, tick),
         }

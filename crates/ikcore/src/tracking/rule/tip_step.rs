@@ -45,7 +45,7 @@ impl TipStep {
             found.assess(robot, &aims);
         }
         if !found.is_solved() && !self.approach(&begin, &mut found, &tick) {
-            let stop = Stop { max_evaluations: MOST_EVALUATIONS, ..Stop::default() };
+            let stop = Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() };
             tick.descend(&mut found, &tick_box.bounds, stop);
             found.assess(robot, &aims);
             found.evaluations += 1;
@@ -91,13 +91,7 @@ impl TipStep {
         let lambda = least.max(LevenbergMarquardt::default().initial_damping * begin.value());
         let mut end = begin.q.clone();
         self.begin.write_step(lambda, &begin.q, positions.ends(), &mut end);
-        let [lower, upper] = tick.context.ends();
-        let fraction = |j: usize| {
-            let way = end[j] - begin.q[j];
-            let room = if way > 0.0 { upper[j] } else { lower[j] } - begin.q[j];
-            if way == 0.0 { 1.0 } else { room / way }
-        };
-        let fraction = (0..n).map(fraction).fold(1.0, f64::min);
+        let fraction = tick.fraction_within(&begin.q, &end);
         if fraction >= 1.0 {
             return false;
         }

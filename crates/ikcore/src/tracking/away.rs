@@ -1,0 +1,75 @@
+//! What keeps an arm away from its target, as a step says it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::message::{Message, Setting, message};
+use crate::task::TipError;
+
+/// What keeps an arm away from its target: joints at their limits or, without any, a singular configuration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Away {
+    /// What is known of a way to the target.
+    pub way: Way,
+    /// Joints held at their lower and upper limits, one bit each.
+    pub held: [u64; 2],
+}
+
+/// A way to the target of an arm that its rule cannot bring nearer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Way {
+    /// No configuration on the target is known.
+    Unknown,
+    /// One is known, and the arm is told to stay.
+    Declined,
+    /// One is known, but the straight way of the joints to it is not clear or would part tips that are held.
+    Blocked,
+    /// The arm is on its way to one.
+    Taken,
+}
+
+impl Away {
+    /// Sentence on an arm that is `error` away; `joint` names a joint.
+    pub(super) fn message(&self, error: &TipError, limits: &str, joint: impl Fn(usize) -> String) -> Message {
+        if self.way == Way::Taken {
+            let text = "on the way to a configuration on the target, by a motion of the joints, ";
+            return format!("{text}{error} away{limits}").into();
+        }
+        let holder = self.holder(joint);
+        let holds = format!("{holder} {error} away{limits}; ");
+        match self.way {
+            Way::Unknown => {
+                let advice = "widen the limits or the tolerance, or move the target into reach";
+                format!(
+                    "no nearer than in the tick before, {error} away{limits}: {holder}, and no configuration on the target is \
+                     known: {advice}"
+                )
+                .into()
+            }
+            Way::Declined => message![
+                holds,
+                "the target is in reach: ",
+                Setting::Recover,
+                " lets the arm go to a configuration on it"
+            ],
+            Way::Blocked | Way::Taken => format!("{holds}{}: plan a motion", Self::NO_WAY).into(),
+        }
+    }
+
+    /// What is said where no line of the joints is clear.
+    pub(super) const NO_WAY: &str = "the target is in reach, but no straight way of the joints to it is clear";
+
+    /// What holds the arm, as the beginning of a sentence.
+    fn holder(&self, joint: impl Fn(usize) -> String) -> String {
+        let [lower, upper] = self.held;
+        let side = |j: usize| [(lower, "lower"), (upper, "upper")].into_iter().find(|(held, _)| held >> j & 1 == 1);
+        let held = (0..u64::BITS as usize).filter_map(|j| Some((joint(side(j).map(|_| j)?), side(j)?.1)));
+        match held.collect::<Vec<_>>().as_slice() {
+            [] => "a singular configuration holds the arm".into(),
+            [(joint, side)] => format!("joint '{joint}', at its {side} limit, holds the arm"),
+            several => {
+                let each = several.iter().map(|(joint, side)| format!("'{joint}' ({side})"));
+                format!("joints at their limits, {}, hold the arm", each.collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+}
