@@ -130,7 +130,7 @@ fn an_arm_told_to_stay_says_what_holds_it_and_that_it_could_go() {
                 continue;
             }
             held += 1;
-            let message = end.message_naming(|j| panda.joints()[j].name.clone());
+            let message = end.message_with(end.status.advice(), &[], |j| panda.joints()[j].name.clone());
             let ends = "; the target is in reach: recovery lets the arm go to a configuration on it";
             let holds = message.starts_with("joint '") || message.starts_with("joints at their limits, '");
             assert!(end.status == Status::Capped && holds && message.ends_with(ends), "{message}");

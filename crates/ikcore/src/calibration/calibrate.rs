@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 
 use super::arm_model::{ArmModel, FreeEnds, Outside};
-use super::calibration::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
 use super::doubts::{check_configurations, check_lengths, still_joints};
 use super::estimate::Estimate;
 use super::identifiability::{Identifiability, identifiability};
@@ -13,6 +12,7 @@ use super::normal_equations::{NormalEquations, Weighing};
 use super::parameters::{Parameter, Part, Parts, Place, usual};
 use super::placement::{outside_start, placed_ends};
 use super::residual::Comparison;
+use super::result::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
 use super::robust_fit::{Noise, RobustFit, fitted};
 use super::statistics::{Influence, covariance, influences};
 use super::suggestion::{SuggestionOptions, suggested};

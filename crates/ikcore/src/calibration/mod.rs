@@ -12,12 +12,11 @@
 //! | `robust_fit` | noise and outliers |
 //! | `statistics`, `identifiability` | what is known of the result |
 //! | `suggestion` | further configurations that would tell most |
-//! | `calibrate`, `calibration` | the call and its result |
+//! | `calibrate`, `result` | the call and its result |
 
 mod arm_model;
 mod board_pose;
 mod calibrate;
-mod calibration;
 mod camera;
 mod doubts;
 mod estimate;
@@ -29,15 +28,16 @@ mod normal_equations;
 mod parameters;
 mod placement;
 mod residual;
+mod result;
 mod robust_fit;
 mod start;
 mod statistics;
 mod suggestion;
 
 pub use calibrate::{CalibrationOptions, calibrate};
-pub use calibration::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
 pub use camera::PinholeCamera;
 pub use identifiability::Identifiability;
 pub use measured::{CameraPlace, Measured};
 pub use parameters::Part;
+pub use result::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
 pub use suggestion::SuggestionOptions;

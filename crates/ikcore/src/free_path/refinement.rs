@@ -228,7 +228,8 @@ mod tests {
         let obstacles = [Shape::sphere([1.6, 0.0, 0.0], 0.2).unwrap()];
         let limits = limits(&robot);
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
-        let mut search = TreeSearch::new(&scene, &limits, 0.01, 1_000_000, Deadline::start(None));
+        let ranges = TreeSearch::ranges(&robot, &limits, std::iter::empty());
+        let mut search = TreeSearch::new(&scene, ranges, 0.01, 1_000_000, Deadline::start(None));
         let corners = [[-0.8, -2.2], [2.2, -2.2], [2.2, -0.5]];
         let points = [START, corners[0], corners[1], corners[2], END];
         let path = JointPolyline(points.iter().map(|q| q.to_vec()).collect());

@@ -198,7 +198,8 @@ mod tests {
         let obstacles = [obstacle];
         let limits = ConstantLimits::for_robot(&robot, None, "this test").unwrap();
         let scene = Scene::new(&robot, &obstacles).unwrap().without_self_collision();
-        let mut search = TreeSearch::new(&scene, &limits, MARGIN, budget, Deadline::start(None));
+        let ranges = TreeSearch::ranges(&robot, &limits, std::iter::empty());
+        let mut search = TreeSearch::new(&scene, ranges, MARGIN, budget, Deadline::start(None));
         let (start, end) = ([-0.8, 0.0], [0.8, 0.0]);
         let mut rng = rng::stream(1, 0);
         let route = Route { start: &start, ends: &[end.to_vec()], is_promising: &|_| true };

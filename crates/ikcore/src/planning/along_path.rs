@@ -56,7 +56,8 @@ fn plan_from(
     let mut planned = plan_admitted(robot, tip_path, &options, monitor);
     let begins_there = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.trajectory.start() == q);
     let succeeded = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.violations.is_empty());
-    if !outside.is_empty() && !(begins_there(&planned) && succeeded(&planned)) {
+    let is_led = begins_there(&planned) && succeeded(&planned);
+    if !outside.is_empty() && !is_led {
         let widened = limits.widened_to(robot, options.limits.as_ref(), &q)?;
         let again = plan_admitted(robot, tip_path, &AlongPathOptions { limits: Some(widened), ..options }, monitor);
         let ends_inside = again.as_ref().is_ok_and(|plan| limits.contain(&plan.trajectory.end()));

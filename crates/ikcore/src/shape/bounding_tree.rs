@@ -121,7 +121,7 @@ impl<L> BoundingTree<L> {
             let first = pieces.into_iter().find(|piece| *piece != NONE)?;
             let full = pieces.map(|piece| if piece == NONE { first } else { piece } as usize);
             leaves.push(Leaf { lanes: lanes_of(full), pieces });
-            Some((leaves.len() as u32 - 1 | LEAF, full.iter().fold(Aabb::around([]), |all, i| all.with(&box_of(*i)))))
+            Some(((leaves.len() as u32 - 1) | LEAF, full.iter().fold(Aabb::around([]), |all, i| all.with(&box_of(*i)))))
         };
         let (mut nodes, mut bounds) = (self.nodes.clone(), vec![Aabb::around([]); self.nodes.len()]);
         // The children of a node are behind it.

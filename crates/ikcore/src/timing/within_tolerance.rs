@@ -28,7 +28,7 @@ pub fn time_optimal_within(
 ) -> Result<Trajectory> {
     check(path, tolerance)?;
     let mut best = time_optimal(path, limits, options);
-    if matches!(best, Err(Error::Interrupted)) || tolerance.iter().any(|tolerance| *tolerance == 0.0) {
+    if matches!(best, Err(Error::Interrupted)) || tolerance.contains(&0.0) {
         return best;
     }
     let tube = Tube::new(path, limits);

@@ -179,7 +179,7 @@ mod tests {
         for ranges in [
             &[(-170.0, 170.0); 3][..],
             &[(-169.99, 169.99), (-119.5, 120.2), (-20.0, 31.5)],
-            &[(-3.14, 3.14), (-90.0, 90.0)],
+            &[(-3.1, 3.1), (-90.0, 90.0)],
             &[(0.0, 180.0)],
             &[(-100.0, 100.0), (-170.0, 170.0)],
         ] {
@@ -233,13 +233,13 @@ mod tests {
             (table.lower, table.upper) = (vec![-limit; 3], vec![limit; 3]);
             Robot::from_dh("arm", &table).unwrap()
         };
-        let doubt = of_converted_limits(&table(3.14_f64.to_radians())).unwrap();
+        let doubt = of_converted_limits(&table(3.1_f64.to_radians())).unwrap();
         assert_eq!(
             doubt.message(),
-            "upper limit of joint 'joint_1' (and those of 2 other joints) is 0.05480 rad (0.008722 turns), which looks like \
-             radians read as degrees: 0.05480 rad are 3.140 degrees; angles of the model are in degrees unless its compiler says radian"
+            "upper limit of joint 'joint_1' (and those of 2 other joints) is 0.05411 rad (0.008611 turns), which looks like \
+             radians read as degrees: 0.05411 rad are 3.100 degrees; angles of the model are in degrees unless its compiler says radian"
         );
-        assert_eq!(of_converted_limits(&table(3.14)), None);
+        assert_eq!(of_converted_limits(&table(3.1)), None);
         assert_eq!(of_converted_limits(&table(0.3)), None);
     }
 

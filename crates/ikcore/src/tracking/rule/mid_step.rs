@@ -87,7 +87,7 @@ pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResu
     found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
-    if !found.is_solved() && memory.into_band(&mut found, &mut tick) {
+    if !found.is_solved() && memory.enter_band(&mut found, &mut tick) {
         moved = true;
     } else if !found.is_solved()
         && let Some(ranked) = tick.ranked()
@@ -218,7 +218,7 @@ impl MidStepState {
     }
 
     /// Moves within the tolerances, where the tick does not allow to meet the target itself.
-    fn into_band(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
+    fn enter_band(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
         let bounds = tick.bounds().clone();
         if !tick.descend_into_band(found, &bounds) {
             return false;

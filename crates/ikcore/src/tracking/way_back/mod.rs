@@ -79,6 +79,7 @@ pub(super) struct EndOfTick<'a> {
 
 /// What the arm does from the next tick on.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "it is used at once, and a box would be on the heap")]
 pub(super) enum Next {
     /// It goes on.
     Continue,
