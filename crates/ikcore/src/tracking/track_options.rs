@@ -57,6 +57,7 @@ impl Default for TrackOptions {
             ease: false,
             surroundings: Surroundings::default(),
             recover: true,
+            start_slack: StartSlack::default(),
             seed: 0,
         }
     }
