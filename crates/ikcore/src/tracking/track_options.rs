@@ -51,7 +51,6 @@ impl Default for TrackOptions {
             tolerance: Tolerance::default(),
             limits: None,
             limit_at: LimitAt::default(),
-            start_slack: StartSlack::default(),
             target_filter: None,
             timeout: None,
             ease: false,
