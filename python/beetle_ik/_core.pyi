@@ -1516,16 +1516,18 @@ class Goal:
 
     @property
     def weight(self) -> float | _Array:
-        """Weight relative to other goals."""
+        """Weight relative to other goals; of a `Posture` with a weight for each joint (n,)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class Posture(Goal):
-    """Stays close to a posture: minimises |q - posture|^2.
+    """Stays close to a posture: minimises weight * |q - posture|^2 or, with a weight for each joint, the sum of
+    (weight * (q - posture))^2.
 
     Args:
         posture: (n,) (rad, m).
-        weight: weight relative to other goals.
+        weight: weight relative to other goals; or the cost of moving each joint (n,): joints of a large weight move little
+            where others can do it, such as a base that is to stay while the arm moves.
     """
 
     def __new__(cls, posture: ArrayLike, *, weight: ArrayLike = 1.0) -> Posture: ...
@@ -2640,7 +2642,7 @@ def track(
         A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, or a time step that is not positive.
+        InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
         LimitError: a start farther outside its limits than start_slack, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
             region; position, acceleration or jerk limits that vary in time, among obstacles.
