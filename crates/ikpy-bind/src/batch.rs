@@ -265,9 +265,9 @@ pub fn solve_batch(
         _ => Targets::Tips(&each),
     };
     for ((subject, _), targets) in asked.iter().zip(&each) {
-        units::doubt((0..targets.len()).find_map(|row| doubt_about(&arm, subject, targets, row)))?;
+        units::doubt((0..targets.len()).find_map(|row| doubt_about(arm, subject, targets, row)))?;
     }
-    let starts = starts.map(|starts| joint_rows(&arm, "starts", starts)).transpose()?;
+    let starts = starts.map(|starts| joint_rows(arm, "starts", starts)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),

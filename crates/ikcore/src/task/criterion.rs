@@ -24,7 +24,7 @@ pub struct Criterion {
     pub outside: Outside,
     /// Whether the value is what lies beyond the tolerances, instead of the whole error.
     #[serde(skip)]
-    pub(crate) beyond: bool,
+    pub beyond: bool,
 }
 
 impl From<Tolerance> for Criterion {
