@@ -1836,6 +1836,7 @@ def calibrate(
         InvalidInputError: too few measurements, configurations that are all alike, millimetres for metres, degrees for radians, a mirrored
             frame; wrong shape; NaN.
     """
+
 def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],

@@ -123,6 +123,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.named": {"name": "iiwa14"},
     "Robot.planar": {"lengths": [1, 1]},
     "Robot.random_configurations": {"m": 3},
+    "Robot.q_from": {"names": ARM.joint_names, "values": START},
     "Robot.with_attached": {"link": "link_7", "shape": bik.obstacles.Sphere((0, 0, 0), 0.1)},
     "Robot.with_base": {"base": np.eye(4)},
     "Robot.with_capsules": {"radius": 0.05},

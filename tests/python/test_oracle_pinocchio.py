@@ -32,6 +32,7 @@ def test_real_robots_agree_with_pinocchio(file: Path) -> None:
     assert_same_kinematics(robot, Oracle(file.read_text(), described["base"], described["tip"]), configurations=50)
 
 
+@pytest.mark.filterwarnings("ignore::beetle_ik.UnitsWarning")  # drawn limits may look like degrees
 @pytest.mark.parametrize("joints", range(1, 13))
 @pytest.mark.parametrize("place", ["root", "inside", "branch"])
 def test_generated_chains_agree_with_pinocchio(joints: int, place: str) -> None:

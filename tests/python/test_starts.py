@@ -59,6 +59,7 @@ def assert_kept(q: Array, limits: bik.Limits, dt: float, *, start: Array, robot:
     assert np.all(q <= upper + 1e-9)
 
 
+@pytest.mark.filterwarnings("ignore::beetle_ik.UnitsWarning")
 @pytest.mark.parametrize("beyond", [*ROUNDING, *BEYOND, 1.0, 100.0, 1e6])
 def test_solve_takes_any_finite_start_as_a_hint(beyond: float) -> None:
     for start in (below(beyond), 2 * INSIDE - below(beyond)):

@@ -149,10 +149,7 @@ def test_given_limits_of_zero_are_named_as_given() -> None:
     robot = loaded(f"<limit {RANGE} velocity='1'/>")
     for field in ("velocity", "acceleration", "jerk"):
         told = steps(robot, limits=bik.Limits(**{field: 0.0}))[-1].message
-        assert (
-            f"joints {NAMED} cannot move, since the {field} limit is 0: give limits=Limits({field}=...)"
-            in told
-        )
+        assert f"joints {NAMED} cannot move, since the {field} limit is 0: give limits=Limits({field}=...)" in told
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,13 +32,13 @@ def _parts(value: Any) -> tuple[list[Any], NDArray[Any]] | None:
     if isinstance(value, Mapping):
         return list(value), np.stack([np.asarray(each, dtype=np.float64) for each in value.values()], axis=-1)
     fields = getattr(getattr(value, "dtype", None), "names", None)
-    if fields:
+    if isinstance(fields, tuple):
         return list(fields), np.stack([np.asarray(value[name], dtype=np.float64) for name in fields], axis=-1)
     if hasattr(value, "name") and hasattr(value, "position"):  # sensor_msgs/JointState
         return list(value.name), np.asarray(value.position, dtype=np.float64)
     labels = getattr(value, "columns", None)
     if labels is None and getattr(value, "ndim", None) == 1:
         labels = getattr(value, "index", None)
-    if labels is None or callable(labels) or not any(isinstance(label, str) for label in labels):
+    if not isinstance(labels, Iterable) or not any(isinstance(label, str) for label in labels):
         return None
     return list(labels), np.asarray(value, dtype=np.float64)

@@ -4,6 +4,10 @@ use super::angles::{MANY_TURNS, MOST_DEGREES, typed_in_degrees};
 use super::doubt::UnitDoubt;
 use crate::robot::{Joint, Robot};
 
+/// Name of configurations to evaluate, as for forward kinematics. Computations make many of these, and a simulation that
+/// diverges passes through any angle, so only numbers as people write them are doubted: of two decimals at most.
+const EVALUATED: &str = "joint angles";
+
 /// Multiple of its range by which a joint that slides is outside it.
 const RANGES: f64 = 20.0;
 
@@ -21,8 +25,9 @@ pub fn of_configurations(robot: &Robot, what: &str, qs: &[f64]) -> Option<UnitDo
 #[cold]
 fn of_configuration(joints: &[Joint], what: &str, q: &[f64]) -> Option<UnitDoubt> {
     let thing = |joint: &Joint| format!("{what}: joint '{}'", joint.name);
+    let is_written = |value: f64| what != EVALUATED || (100.0 * value - (100.0 * value).round()).abs() < 1e-9;
     let found = joints.iter().zip(q).find_map(|(joint, value)| match joint.kind.turns() {
-        true => in_degrees(joint, *value).then(|| UnitDoubt::joint_degrees(thing(joint), *value)),
+        true => (in_degrees(joint, *value) && is_written(*value)).then(|| UnitDoubt::joint_degrees(thing(joint), *value)),
         false => in_millimetres(joint, *value).then(|| {
             let against = format!("its range is {} to {} m", joint.lower, joint.upper);
             UnitDoubt::millimetres(thing(joint), *value, against)
@@ -70,6 +75,9 @@ mod tests {
         for honest in [[20.0; 7], [f64::NAN; 7], [1e6; 7], [0.0, 0.0, 0.0, -2.0, 0.0, 2.0 + 12.56, 0.0]] {
             assert_eq!(of_configurations(&panda, "start", &honest), None, "{honest:?}");
         }
+        let diverged = [0.0, -45.123, 0.0, -2.0, 0.0, 1.0, 0.0];
+        assert_eq!(of_configurations(&panda, "joint angles", &diverged), None);
+        assert!(of_configurations(&panda, "joint angles", &degrees).is_some());
         let second = [[0.0; 7], degrees].concat();
         assert_eq!(of_configurations(&panda, "start", &second), Some(doubt));
     }
