@@ -81,8 +81,10 @@ def with_problem(**problem: Any) -> list[dict[str, Any]]:
     return [PROBLEMS[0], problem]
 
 
-OPTIONS = "start_slack, end_turns, approach, retreat, free_start, task, limits, method, objective, obstacles, margin, "
+OPTIONS = (
+    "start_slack, end_turns, approach, retreat, free_start, task, limits, method, objective, obstacles, margin, "
     "self_collision, stop, seed"
+)
 NAMES = f"start, end, start_q, end_q, start_qd, {OPTIONS}"
 WRONG: list[Case] = [
     (

@@ -121,6 +121,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         "planning",
         &[
             "robot",
+            "limits",
             "obstacle",
             "task",
             "solver",

@@ -277,7 +277,8 @@ fn two_hands_return_as_one_does() {
     let mut taken = 0;
     for (limits, _) in tips::all_limits(&robot) {
         for (x, y) in [(1.5, 0.0), (1.2, 0.9), (0.3, 1.5), (0.8, -1.4), (-1.5, 0.2), (-0.8, -1.2)] {
-            let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };
+            let surroundings = Surroundings { self_collision: Some(false), ..Surroundings::default() };
+            let options = TrackOptions { limits: Some(limits.clone()), surroundings, ..TrackOptions::default() };
             let mut session = session(&robot, &start, &options);
             let mut path = Excess::default();
             path.push(&start);

@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 
 use super::estimate::Estimate;
-use super::parameters::{Parameter, Part, Parts, Place, of_correction, usual};
+use super::parameters::{FitParameter, FittedParts, Part, Place, of_correction, usual};
 use crate::error::Result;
 use crate::math::{Pose, pose};
 use crate::robot::{Element, Robot};
@@ -43,7 +43,7 @@ pub(super) struct FreeEnds {
 
 /// Transforms beside the robot's own: the first frame is that of the measurements, the last one what is measured.
 #[derive(Debug, Clone)]
-pub(super) struct Outside {
+pub(super) struct CameraFrames {
     /// Pose of the robot's frame in that of the measurements, and its name.
     pub before: (Pose, &'static str),
     /// Pose of what is measured in the frame of the tip, and its name.
@@ -62,9 +62,9 @@ pub(super) struct ArmModel {
     ends: [Option<usize>; 2],
     /// Parameter of each joint's zero.
     zeros: Vec<Option<usize>>,
-    outside: Option<Outside>,
+    outside: Option<CameraFrames>,
     corrections: usize,
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<FitParameter>,
 }
 
 /// Frames and axes of one configuration, from which the derivatives follow.
@@ -77,7 +77,7 @@ pub(super) struct Marks {
 
 impl ArmModel {
     /// `outside` replaces base and tool as the ends that are fitted.
-    pub fn new(robot: &Robot, parts: &Parts, free: FreeEnds, outside: Option<Outside>) -> Self {
+    pub fn new(robot: &Robot, parts: &FittedParts, free: FreeEnds, outside: Option<CameraFrames>) -> Self {
         let mut model = Self {
             stages: vec![],
             elements: vec![],
@@ -97,7 +97,7 @@ impl ArmModel {
         model
     }
 
-    fn push_start(&mut self, robot: &Robot, parts: &Parts, free: FreeEnds) {
+    fn push_start(&mut self, robot: &Robot, parts: &FittedParts, free: FreeEnds) {
         let own = *robot.base();
         let (nominal, name) = self.outside.as_ref().map_or((own, "base"), |outside| outside.before);
         let directions = if parts.has(Part::Base) { free.base } else { 0 };
@@ -107,7 +107,7 @@ impl ArmModel {
         }
     }
 
-    fn push_end(&mut self, robot: &Robot, parts: &Parts, free: FreeEnds) {
+    fn push_end(&mut self, robot: &Robot, parts: &FittedParts, free: FreeEnds) {
         let own = *robot.tool();
         let (nominal, name) = self.outside.as_ref().map_or((own, "tool"), |outside| outside.after);
         if self.outside.is_some() {
@@ -191,7 +191,7 @@ impl ArmModel {
             }
             self.zeros[number] = Some(self.parameters.len());
             let is_angle = joint.kind.turns();
-            self.parameters.push(Parameter {
+            self.parameters.push(FitParameter {
                 name: format!("offset {}", joint.name),
                 is_angle,
                 usual: if is_angle { usual::ANGLE_OFFSET } else { usual::SLIDE_OFFSET },
@@ -295,7 +295,7 @@ impl ArmModel {
 
     /// The poses outside of the robot, corrected.
     pub fn outside(&self, estimate: &Estimate) -> Option<[Pose; 2]> {
-        let Outside { before, after } = self.outside.as_ref()?;
+        let CameraFrames { before, after } = self.outside.as_ref()?;
         Some(self.corrected_ends([&before.0, &after.0], estimate))
     }
 
@@ -325,7 +325,7 @@ impl ArmModel {
     }
 
     /// Whether a parameter belongs to base or tool, or is a landmark.
-    pub fn is_placement(&self, parameter: &Parameter) -> bool {
+    pub fn is_placement(&self, parameter: &FitParameter) -> bool {
         match parameter.place {
             Place::Offset(_) => false,
             Place::Correction { number, .. } => self.ends.contains(&Some(number)),

@@ -2,18 +2,18 @@
 
 use nalgebra::DMatrix;
 
-use super::arm_model::{ArmModel, FreeEnds, Outside};
+use super::arm_model::{ArmModel, CameraFrames, FreeEnds};
 use super::doubts::{check_configurations, check_lengths, still_joints};
 use super::estimate::Estimate;
 use super::identifiability::{Identifiability, identifiability};
 use super::landmark::Landmark;
 use super::measured::{CameraPlace, Measured};
 use super::normal_equations::{NormalEquations, Weighing};
-use super::parameters::{Parameter, Part, Parts, Place, usual};
+use super::parameters::{FitParameter, FittedParts, Part, Place, usual};
 use super::placement::{outside_start, placed_ends};
 use super::residual::Comparison;
 use super::result::{Calibration, Findings, FittedParameter, RmsError, RowErrors};
-use super::robust_fit::{Noise, RobustFit, fitted};
+use super::robust_fit::{NoiseModel, RobustFit, fitted};
 use super::statistics::{Influence, covariance, influences};
 use super::suggestion::{SuggestionOptions, suggested};
 use crate::error::{Error, Result};
@@ -57,14 +57,14 @@ const SEED: u64 = 46;
 /// [`Error::Contradiction`] if nothing is to be fitted.
 pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &CalibrationOptions) -> Result<Calibration> {
     robot.require_one_tip("calibration")?;
-    let parts = Parts::new(&options.fit)?;
+    let parts = FittedParts::new(&options.fit)?;
     measured.check(robot, qs)?;
     options.suggestion.check(robot)?;
     check_sigma(measured, options.sigma.as_deref())?;
     check_configurations(robot, measured, qs)?;
     check_lengths(robot, measured, qs)?;
     let start = Setup::new(robot, qs, measured, &parts)?;
-    let noise = Noise { given: options.sigma.clone(), robust: options.robust };
+    let noise = NoiseModel { given: options.sigma.clone(), robust: options.robust };
     start.calibrated(robot, qs, &noise, &options.suggestion)
 }
 
@@ -79,7 +79,7 @@ struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    fn new(robot: &Robot, qs: &'a [f64], measured: &'a Measured, parts: &Parts) -> Result<Self> {
+    fn new(robot: &Robot, qs: &'a [f64], measured: &'a Measured, parts: &FittedParts) -> Result<Self> {
         let free = free_ends(measured);
         let outside = outside_start(robot, qs, measured)?;
         let fits = [parts.has(Part::Base) && free.base > 0, parts.has(Part::Tool) && free.tool > 0];
@@ -108,7 +108,7 @@ impl<'a> Setup<'a> {
         &self,
         robot: &Robot,
         qs: &[f64],
-        noise: &Noise,
+        noise: &NoiseModel,
         suggestion: &SuggestionOptions,
     ) -> Result<Calibration> {
         let comparison = self.comparison();
@@ -123,7 +123,7 @@ impl<'a> Setup<'a> {
         let placed = if ends.iter().any(|scale| *scale > 0.0) {
             fitted(&comparison, self.nominal(), noise, first, &ends)?
         } else {
-            let unfitted = Noise { given: noise.given.clone(), robust: false };
+            let unfitted = NoiseModel { given: noise.given.clone(), robust: false };
             fitted(&comparison, self.nominal(), &unfitted, first, &ends)?
         };
         let fit = if ends == all {
@@ -170,7 +170,7 @@ impl<'a> Setup<'a> {
         qs: &[f64],
         [placed, fit]: [&RobustFit; 2],
         scales: &[f64],
-        noise: &Noise,
+        noise: &NoiseModel,
         suggestion: &SuggestionOptions,
     ) -> Result<Calibration> {
         let comparison = self.comparison();
@@ -251,7 +251,7 @@ impl<'a> Setup<'a> {
         RmsError { length: mean(0), rotation: if self.measured.has_rotations() { mean(1) } else { f64::NAN } }
     }
 
-    fn noise_of(&self, fit: &RobustFit, noise: &Noise) -> RmsError {
+    fn noise_of(&self, fit: &RobustFit, noise: &NoiseModel) -> RmsError {
         let [length, rotation] = noise.given.as_ref().map_or(fit.scale, |given| given[0]);
         RmsError { length, rotation: if self.measured.has_rotations() { rotation } else { f64::NAN } }
     }
@@ -307,12 +307,18 @@ fn free_ends(measured: &Measured) -> FreeEnds {
     FreeEnds { base, tool: if measured.is_of_a_point() { 3 } else { 6 } }
 }
 
-fn model_of(robot: &Robot, parts: &Parts, free: FreeEnds, outside: Option<Outside>, measured: &Measured) -> ArmModel {
+fn model_of(
+    robot: &Robot,
+    parts: &FittedParts,
+    free: FreeEnds,
+    outside: Option<CameraFrames>,
+    measured: &Measured,
+) -> ArmModel {
     let mut model = ArmModel::new(robot, parts, free, outside);
     if parts.has(Part::Base) {
         let landmark = measured.landmark();
         let entries = landmark.parameters().iter().enumerate();
-        model.parameters.extend(entries.map(|(entry, (name, is_angle))| Parameter {
+        model.parameters.extend(entries.map(|(entry, (name, is_angle))| FitParameter {
             name: (*name).into(),
             is_angle: *is_angle,
             usual: usual::PLACEMENT,

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Translation3, Vector3};
 
 use super::landmark::Landmark;
-use super::parameters::{Parameter, Place};
+use super::parameters::{FitParameter, Place};
 use crate::math::Pose;
 
 /// Point in the space of the parameters.
@@ -18,7 +18,7 @@ pub(super) struct Estimate {
 
 impl Estimate {
     /// Moves by `step` (one entry per parameter).
-    pub fn stepped(&self, parameters: &[Parameter], step: &[f64]) -> Self {
+    pub fn stepped(&self, parameters: &[FitParameter], step: &[f64]) -> Self {
         let mut next = self.clone();
         let mut twists = vec![[0.0; 6]; self.corrections.len()];
         for (parameter, change) in parameters.iter().zip(step) {
@@ -38,8 +38,8 @@ impl Estimate {
     }
 
     /// Value of each parameter: translation and rotation vector of its correction, offset, displacement of the landmark.
-    pub fn values(&self, parameters: &[Parameter], start: &Landmark) -> Vec<f64> {
-        let value = |parameter: &Parameter| match parameter.place {
+    pub fn values(&self, parameters: &[FitParameter], start: &Landmark) -> Vec<f64> {
+        let value = |parameter: &FitParameter| match parameter.place {
             Place::Offset(joint) => self.offsets[joint],
             Place::Correction { number, direction } if direction < 3 => {
                 self.corrections[number].translation.vector[direction]

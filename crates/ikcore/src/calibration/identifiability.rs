@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::estimate::Estimate;
 use super::normal_equations::Weighing;
-use super::parameters::Parameter;
+use super::parameters::FitParameter;
 use super::residual::Comparison;
 use crate::error::Result;
 
@@ -114,7 +114,7 @@ pub(super) fn identifiability(
 }
 
 /// Names the main parameters of a combination.
-fn named(vector: &DVector<f64>, parameters: &[Parameter]) -> String {
+fn named(vector: &DVector<f64>, parameters: &[FitParameter]) -> String {
     let mut order: Vec<usize> = (0..vector.len()).collect();
     order.sort_by(|a, b| vector[*b].abs().total_cmp(&vector[*a].abs()));
     let least = NAMED * vector[order[0]].abs();

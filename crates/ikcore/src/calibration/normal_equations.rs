@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::estimate::Estimate;
-use super::residual::{Block, Comparison, LENGTHS, Scratch};
+use super::residual::{Block, Comparison, LENGTHS, ResidualScratch};
 use crate::error::Result;
 use crate::interrupt::checkpoint_at;
 
@@ -47,7 +47,7 @@ impl Comparison<'_> {
         scales: &[f64],
         mut visit: impl FnMut(usize, &Block),
     ) -> Result<()> {
-        let (mut scratch, mut block) = (Scratch::default(), Block::default());
+        let (mut scratch, mut block) = (ResidualScratch::default(), Block::default());
         for index in 0..self.measured.count() {
             checkpoint_at(index)?;
             self.write(index, estimate, &mut scratch, &mut block);
@@ -113,7 +113,7 @@ pub(super) fn cost(
 ) -> Result<f64> {
     let mut cost: f64 = prior_residuals(comparison, estimate, scales).iter().map(|z| z * z).sum();
     let has_rotations = comparison.measured.has_rotations();
-    let (mut scratch, mut block) = (Scratch::default(), Block::default());
+    let (mut scratch, mut block) = (ResidualScratch::default(), Block::default());
     for (index, (weight, sigma)) in weighing.weights.iter().zip(&weighing.sigma).enumerate() {
         checkpoint_at(index)?;
         comparison.write_residual(index, estimate, &mut scratch, &mut block);

@@ -27,9 +27,9 @@ impl Part {
 
 /// Parts to fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Parts(Vec<Part>);
+pub(super) struct FittedParts(Vec<Part>);
 
-impl Parts {
+impl FittedParts {
     pub fn new(parts: &[Part]) -> Result<Self> {
         if parts.is_empty() {
             let known = Part::ALL.map(|part| format!("'{part}'")).join(", ");
@@ -74,7 +74,7 @@ pub(super) enum Place {
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Parameter {
+pub(super) struct FitParameter {
     pub name: String,
     /// True for an angle (rad), false for a length (m).
     pub is_angle: bool,
@@ -92,8 +92,8 @@ pub(super) fn of_correction(
     number: usize,
     directions: usize,
     [length, angle]: [f64; 2],
-) -> impl Iterator<Item = Parameter> {
-    (0..directions).map(move |direction| Parameter {
+) -> impl Iterator<Item = FitParameter> {
+    (0..directions).map(move |direction| FitParameter {
         name: format!("{name} {}", DIRECTIONS[direction]),
         is_angle: direction > 2,
         usual: if direction > 2 { angle } else { length },

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::arm_model::Outside;
+use super::arm_model::CameraFrames;
 use super::board_pose::board_pose;
 use super::measured::{CameraPlace, Measured};
 use super::start::{aligned, both_ends, first_end};
@@ -11,7 +11,7 @@ use crate::math::Pose;
 use crate::robot::Robot;
 
 /// Start of the poses of camera and board; none without a camera.
-pub(super) fn outside_start(robot: &Robot, qs: &[f64], measured: &Measured) -> Result<Option<Outside>> {
+pub(super) fn outside_start(robot: &Robot, qs: &[f64], measured: &Measured) -> Result<Option<CameraFrames>> {
     let (poses, camera) = match measured {
         Measured::BoardPoses { poses, camera } => (poses.clone(), *camera),
         Measured::Pixels { board, seen, lens, camera } => {
@@ -28,7 +28,7 @@ pub(super) fn outside_start(robot: &Robot, qs: &[f64], measured: &Measured) -> R
         CameraPlace::Fixed => ["camera", "board"],
         CameraPlace::Hand => ["board", "camera"],
     };
-    Ok(Some(Outside { before: (before, names[0]), after: (after, names[1]) }))
+    Ok(Some(CameraFrames { before: (before, names[0]), after: (after, names[1]) }))
 }
 
 /// Copy of the robot with the base and tool that are to be fitted placed by closed form, if that is better than as they are.

@@ -27,7 +27,7 @@ const LAST_STEPS: usize = 50;
 
 /// Noise as it was given; without it, it is estimated from the residuals.
 #[derive(Debug, Clone)]
-pub(super) struct Noise {
+pub(super) struct NoiseModel {
     /// Noise of each measurement.
     pub given: Option<Vec<[f64; 2]>>,
     /// Whether outliers are down-weighted.
@@ -48,7 +48,7 @@ pub(super) struct RobustFit {
 pub(super) fn fitted(
     comparison: &Comparison<'_>,
     start: Estimate,
-    noise: &Noise,
+    noise: &NoiseModel,
     first_scale: [f64; 2],
     scales: &[f64],
 ) -> Result<RobustFit> {
@@ -66,7 +66,7 @@ pub(super) fn fitted(
     Ok(fit)
 }
 
-impl Noise {
+impl NoiseModel {
     fn weighing(&self, count: usize, scale: [f64; 2]) -> Weighing {
         let sigma = match &self.given {
             None => vec![scale; count],
@@ -112,7 +112,7 @@ impl Noise {
 }
 
 /// Lowers the weights of measurements with large residuals until they change no more.
-fn reweight(comparison: &Comparison<'_>, noise: &Noise, scales: &[f64], fit: &mut RobustFit) -> Result<()> {
+fn reweight(comparison: &Comparison<'_>, noise: &NoiseModel, scales: &[f64], fit: &mut RobustFit) -> Result<()> {
     let count = comparison.measured.count();
     for round in 0..ROUNDS {
         // The first weights come from the start, where gross errors have not yet bent the arm.
@@ -152,7 +152,7 @@ fn share_left(influences: &[Influence]) -> f64 {
 }
 
 /// Least squares over the measurements that are no outliers, until these stay the same.
-fn reject(comparison: &Comparison<'_>, noise: &Noise, scales: &[f64], fit: &mut RobustFit) -> Result<()> {
+fn reject(comparison: &Comparison<'_>, noise: &NoiseModel, scales: &[f64], fit: &mut RobustFit) -> Result<()> {
     let count = comparison.measured.count();
     fit.outliers = if noise.robust { outliers_of(comparison, fit, scales)? } else { vec![] };
     for round in 0..ROUNDS {

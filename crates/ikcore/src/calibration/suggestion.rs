@@ -6,7 +6,7 @@ use super::arm_model::Marks;
 use super::camera::PinholeCamera;
 use super::estimate::Estimate;
 use super::measured::{CameraPlace, Measured};
-use super::residual::{Block, Comparison, Scratch};
+use super::residual::{Block, Comparison, ResidualScratch};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
 use crate::math::Pose;
@@ -85,7 +85,7 @@ pub(super) fn suggested(
     let each = comparison.dof * comparison.measured.configurations();
     let kind = comparison.measured.like(qs.len() / each);
     let there = Comparison { model: comparison.model, measured: &kind, qs: &qs, dof: comparison.dof };
-    let (mut scratch, mut block) = (Scratch::default(), Block::default());
+    let (mut scratch, mut block) = (ResidualScratch::default(), Block::default());
     let mut candidates: Vec<Candidate> = (0..kind.count())
         .map(|index| {
             there.write(index, estimate, &mut scratch, &mut block);

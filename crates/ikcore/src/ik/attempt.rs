@@ -101,8 +101,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
         let status = self.context.solver().run(&mut evaluator, q);
         self.budget.add(&evaluator);
         let found = Point::from_slice(&evaluator.best().x);
-        let is_clear = self.context.space().is_none_or(|space| space.holds(&found));
-        (status == Status::Solved && is_clear).then(|| self.solution(Status::Solved, found))
+        let is_clear = || self.context.space().is_none_or(|space| space.holds(&found));
+        // Without a budget nothing was evaluated, and there is no best point.
+        (status == Status::Solved && is_clear()).then(|| self.solution(Status::Solved, found))
     }
 
     /// Runs the solver from `x0` within `bounds`, leaving `reserve` evaluations.

@@ -28,7 +28,7 @@ impl Robot {
     /// The configurations `qs` (m, n), row-major, each as by [`wrap`](Self::wrap).
     ///
     /// # Errors
-    /// As [`wrap`](Self::wrap).
+    /// As [`wrap`](Self::wrap); [`Error::WrongLength`] for values that are no rows of joints.
     pub fn wrap_all(&self, qs: &[f64], near: Option<&[f64]>) -> Result<Vec<f64>> {
         let mut wrapped = Vec::with_capacity(qs.len());
         for q in self.rows(qs)? {

@@ -145,7 +145,7 @@ impl Task {
     /// Puts one part of a pose before the other.
     ///
     /// # Errors
-    /// As [`validate`](Self::validate).
+    /// As [`validate`](Self::validate); [`Error::Contradiction`] for a task that is no whole pose.
     pub fn with_first(self, first: First) -> Result<Self> {
         let task = Self { first: Some(first), ..self };
         task.validate().map(|()| task)

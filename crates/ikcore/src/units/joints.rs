@@ -27,7 +27,9 @@ fn of_configuration(joints: &[Joint], what: &str, q: &[f64]) -> Option<UnitDoubt
     let thing = |joint: &Joint| format!("{what}: joint '{}'", joint.name);
     let is_written = |value: f64| what != EVALUATED || (100.0 * value - (100.0 * value).round()).abs() < 1e-9;
     let found = joints.iter().zip(q).find_map(|(joint, value)| match joint.kind.turns() {
-        true => (in_degrees(joint, *value) && is_written(*value)).then(|| UnitDoubt::joint_degrees(thing(joint), *value)),
+        true => {
+            (in_degrees(joint, *value) && is_written(*value)).then(|| UnitDoubt::joint_degrees(thing(joint), *value))
+        }
         false => in_millimetres(joint, *value).then(|| {
             let against = format!("its range is {} to {} m", joint.lower, joint.upper);
             UnitDoubt::millimetres(thing(joint), *value, against)

@@ -14,7 +14,7 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         )
     };
     let within = |tolerance: &[f64], limits: Limits| {
-        let path = JointPath::spline(names(1), &[0.0, 1.0], None, SplineEnds::Natural).unwrap();
+        let path = JointPath::spline(names(2), &[0.0, 0.0, 1.0, 1.0], None, SplineEnds::Natural).unwrap();
         let limits = ConstantLimits::new(&limits, "time_optimal").unwrap();
         time_optimal_within(&path, tolerance, &limits, &TimingOptions::default())
     };
@@ -66,9 +66,9 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "JointPath::spline" NotIncreasing: spline(&[0.0, 0.0, 1.0, 1.0, 2.0, 2.0], Some(&[0.0, 2.0, 1.0])), "knots must increase, but row 2 has 1 after 2";
         "time_optimal" Infeasible: timed(rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap(), TimingOptions::default()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "time_optimal" OutOfRange: timed(rated(), TimingOptions { gridpoints: Some(0), ..Default::default() }), "gridpoints must be from 3 to 200000, got 0";
-        "time_optimal_within" WrongLength: within(&[0.1; 2], rated()), "tolerance: expected 1 (one per joint), got 2";
-        "time_optimal_within" OutOfRange: within(&[-0.1], rated()), "tolerance of joint 'joint_1' must be zero or more and finite, got -0.1";
-        "time_optimal_within" Infeasible: within(&[0.1], rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
+        "time_optimal_within" WrongLength: within(&[0.1], rated()), "tolerance: expected 2 (one per joint), got 1";
+        "time_optimal_within" OutOfRange: within(&[-0.1, 0.1], rated()), "tolerance of joint 'joint_1' must be zero or more and finite, got -0.1";
+        "time_optimal_within" Infeasible: within(&[0.1; 2], rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "ConstantLimits::new" UnsupportedLimit: ConstantLimits::new(&varying(Field::Acceleration), "time_optimal"), "time_optimal cannot honour time-varying acceleration limits: when a point of the path is passed is what it looks for; give numbers";
         "ConstantLimits::new" NegativeLimit: ConstantLimits::new(&constant(Field::Acceleration, -1.0), "time_optimal"), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
         "ConstantLimits::new" EmptyRange: ConstantLimits::new(&crossed(), "time_optimal"), "joint '0': lower limit 1 is above upper limit 0";

@@ -12,7 +12,7 @@ use crate::objective::Point;
 
 /// Part of a curve within the limits, whole turns aside.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Part {
+pub(super) struct CurvePart {
     pub points: Vec<Point>,
     /// Whether the part is a whole closed curve: the last point is followed by the first.
     pub closed: bool,
@@ -21,10 +21,10 @@ pub(super) struct Part {
 }
 
 /// Returns the parts of a curve within the limits, in order.
-pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part> {
+pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<CurvePart> {
     let points = &curve.points;
     let steps = if curve.closed { points.len() } else { points.len().saturating_sub(1) };
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<CurvePart> = Vec::new();
     let mut open = false;
     for k in 0..steps {
         let (begin, end) = (&points[k], &points[(k + 1) % points.len()]);
@@ -34,7 +34,7 @@ pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part
         for [from, to] in pieces {
             if !(from == 0.0 && open) {
                 let point = if from == 0.0 { begin.q.clone() } else { at(&ways, from) };
-                parts.push(Part { points: vec![point], closed: false, cut: [from > 0.0, false] });
+                parts.push(CurvePart { points: vec![point], closed: false, cut: [from > 0.0, false] });
             }
             if let Some(part) = parts.last_mut() {
                 part.points.push(if to == 1.0 { end.q.clone() } else { at(&ways, to) });
@@ -51,7 +51,7 @@ pub(super) fn parts(curve: &TracedCurve, limits: &WrappedLimits<'_>) -> Vec<Part
 }
 
 /// Joins the last part of a closed curve with the first if the first point of the curve is within the limits.
-fn join_ends(parts: &mut Vec<Part>, points: &[CurvePoint]) {
+fn join_ends(parts: &mut Vec<CurvePart>, points: &[CurvePoint]) {
     let begins_inside = parts.first().is_some_and(|first| !first.cut[0] && first.points[0] == points[0].q);
     if !begins_inside {
         return;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::curve::SelfMotion;
-use super::cut::Part;
+use super::cut::CurvePart;
 use super::wrapped_limits::WrappedLimits;
 use crate::ik::attempt::Attempt;
 use crate::math::vector::{distance, norm};
@@ -17,14 +17,14 @@ pub(super) const EXACT: f64 = 1e-9;
 /// Points that do not reach the target from within the limits are omitted; so is an end where the curve grazes its limit and
 /// the solution at the limit is elsewhere. A gap wider than `spacing` divides the curve.
 pub(super) fn unwrapped(
-    part: Part,
+    part: CurvePart,
     spacing: f64,
     attempt: &mut Attempt<'_, '_>,
     limits: &WrappedLimits<'_>,
     start: Option<&[f64]>,
 ) -> Vec<SelfMotion> {
     let bounds = attempt.context.bounds();
-    let Part { mut points, closed, cut } = part;
+    let CurvePart { mut points, closed, cut } = part;
     follow(&mut points, limits);
     let anchor = start.map_or(0, |start| nearest_to(&points, start, limits));
     let Some(winding) = fitted(&mut points, anchor, closed, bounds, limits) else {
@@ -33,8 +33,8 @@ pub(super) fn unwrapped(
         if half < 2 {
             return Vec::new();
         }
-        let first = Part { points: points[..=half].to_vec(), closed: false, cut: [cut[0], false] };
-        let second = Part { points: points[half..].to_vec(), closed: false, cut: [false, cut[1]] };
+        let first = CurvePart { points: points[..=half].to_vec(), closed: false, cut: [cut[0], false] };
+        let second = CurvePart { points: points[half..].to_vec(), closed: false, cut: [false, cut[1]] };
         return [first, second].into_iter().flat_map(|part| unwrapped(part, spacing, attempt, limits, start)).collect();
     };
     let end = points.len() - 1;
