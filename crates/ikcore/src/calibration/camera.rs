@@ -29,10 +29,12 @@ impl PinholeCamera {
     /// Image of a point in the camera's frame, and its derivative.
     pub(super) fn image(&self, point: &Vector3<f64>) -> ([f64; 2], Matrix2x3<f64>) {
         let ([fx, fy], [cx, cy]) = (self.focal, self.centre);
-        let z = point.z.max(NEAREST);
-        let (x, y) = (point.x / z, point.y / z);
-        let slopes = Matrix2x3::new(fx / z, 0.0, -fx * x / z, 0.0, fy / z, -fy * y / z);
-        ([fx * x + cx, fy * y + cy], slopes)
+        let near = point.z.max(NEAREST);
+        // 1 / z and its derivative; behind the camera along the tangent.
+        let slope = -1.0 / (near * near);
+        let inverse = 1.0 / near + slope * (point.z - near);
+        let slopes = Matrix2x3::new(fx * inverse, 0.0, fx * point.x * slope, 0.0, fy * inverse, fy * point.y * slope);
+        ([fx * point.x * inverse + cx, fy * point.y * inverse + cy], slopes)
     }
 
     /// Direction of an image point, with depth one.
