@@ -69,6 +69,9 @@ pub fn q_from<'py>(
     ignore_extra: bool,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let (numbers, k, n) = (array("values", values)?, names.len(), robot.dof());
+    if names.is_empty() {
+        return Err(invalid("names: expected the names of joints, got none".into()));
+    }
     let shape = match numbers.shape() {
         [columns] if *columns == k => vec![n],
         [m, columns] if *columns == k => vec![*m, n],

@@ -61,9 +61,9 @@ def _call(random: np.random.Generator, robot: bik.Robot, q: np.ndarray, kind: st
     away /= np.linalg.norm(away)
     match kind:
         case "q" if wrong:
-            degrees = np.degrees(q).round(0 if hard else 3)
+            degrees = np.degrees(q).round(0 if hard else 2)
             joint = int(random.integers(len(q)))
-            degrees[joint] = np.degrees(max(robot.upper[joint], 0.0)) + FAR
+            degrees[joint] = np.ceil(np.degrees(max(robot.upper[joint], 0.0)) + FAR)
             return f"robot.fk({degrees.tolist()})"
         case "q":
             turns = TURN * random.integers(-2, 3, len(q)) if hard else 0.0

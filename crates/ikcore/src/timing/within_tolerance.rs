@@ -19,7 +19,8 @@ const WIDTHS: i32 = 21;
 /// same path parameter, from its start to its end. Zero tolerances: the motion is on the path.
 ///
 /// # Errors
-/// As [`time_optimal`] if nothing faster is near; [`Error::WrongLength`], [`Error::OutOfRange`] for `tolerance`.
+/// [`Error::Infeasible`] as [`time_optimal`], if no path in the tube is feasible either; [`Error::WrongLength`],
+/// [`Error::OutOfRange`] for `tolerance`.
 pub fn time_optimal_within(
     path: &JointPath,
     tolerance: &[f64],
