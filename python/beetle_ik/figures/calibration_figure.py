@@ -33,7 +33,7 @@ def draw(result: Calibration) -> Figure:
             rows.semilogy(number[~kept], after[~kept], "x", color=VERMILION, label="after, left out")
         rows.axhline(factor * result.rms_held_out, color=BLUE, linestyle="--", linewidth=1, label="held out, rms")
         rows.set(xlabel="measurement", ylabel=f"error [{unit}]")
-        rows.legend(ncols=2, loc="upper right", fontsize="small")
+        rows.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize="small")
         for values, color in ((before[kept], ORANGE), (after[kept], BLUE)):
             parts.step(np.sort(values), np.arange(1, values.size + 1) / values.size, where="post", color=color)
         parts.set(xscale="log", xlabel=f"error [{unit}]", ylabel="part of measurements")
