@@ -3,7 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `time_optimal` | [`time_optimal()`]: the fastest timing of a path, and its options |
-//! | `within_tolerance`, `tube` | [`time_optimal_within`]: motions that may leave their path by a tolerance; the smooth paths that compete |
+//! | `within_tolerance` | [`time_optimal_within`]: motions that may leave their path by a tolerance |
+//! | `tube`, `least_bending` | the smooth paths that compete there |
 //! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
 //! | `grid` | the path cut into segments |
@@ -25,6 +26,7 @@ mod derivatives;
 mod grid;
 mod jerk;
 mod joint_path;
+mod least_bending;
 mod line_timing;
 mod polyline;
 mod quintic;
