@@ -51,8 +51,9 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def written(folder: Path) -> dict[str, int]:
-    """When each chunk was written."""
-    return {str(file.relative_to(folder)): file.stat().st_mtime_ns for file in folder.rglob("c.*")}
+    """When each whole chunk was written; a worker may be writing another, whose file then goes by a passing name."""
+    whole = [file for file in folder.rglob("c.*") if file.suffix != ".partial"]
+    return {str(file.relative_to(folder)): file.stat().st_mtime_ns for file in whole}
 
 
 def in_chunks(store: Path | None, **options: object) -> distributed.BatchArrays:
