@@ -33,6 +33,7 @@ pub fn plan_point_to_point(
     let space = motion_space(&options.surroundings, robot)?;
     let admitted = AdmittedEnds::read(robot, start, ends, options)?;
     let mut plan = plan_admitted(robot, &admitted, space.as_ref(), options, monitor)?;
+    plan.note_kept(robot, &options.keeps)?;
     admitted.note(robot, ends, &mut plan);
     Ok(plan)
 }
@@ -129,6 +130,7 @@ pub(crate) fn check_point_to_point(
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
     }
+    options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     options.surroundings.kept_margin().map(|_| ())
 }
 

@@ -104,7 +104,7 @@ impl CheckedTask {
     }
 
     /// Frame of the subject at `q`.
-    pub(super) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
+    pub(crate) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
         let tip = |tip: usize| robot.tip_of(tip, q);
         let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
         match self.subject {

@@ -1,0 +1,48 @@
+//! Configurations moved to where constraints hold.
+
+use super::keep::Keep;
+use crate::objective::{Linearization, Point};
+use crate::robot::Robot;
+use crate::task::{Aims, CheckedTask, Target};
+
+/// Fraction of the tolerances that is aimed at, so that ways between configurations have room.
+const AIMED_AT: f64 = 0.8;
+
+/// Gauss-Newton steps.
+const STEPS: usize = 12;
+
+/// Moves configurations to where constraints hold; owns its scratch.
+#[derive(Debug)]
+pub(crate) struct Onto<'a> {
+    robot: &'a Robot,
+    tasks: Vec<CheckedTask>,
+    targets: Vec<Target>,
+    lower: Point,
+    upper: Point,
+    linearized: Linearization,
+}
+
+impl<'a> Onto<'a> {
+    /// A projection on where `keeps` hold, within these joint limits.
+    pub fn new(robot: &'a Robot, keeps: &[Keep], [lower, upper]: [&[f64]; 2]) -> Self {
+        let aimed = |keep: &Keep| {
+            let (mut task, target) = keep.narrowed(AIMED_AT);
+            task.criterion = task.criterion.beyond_tolerance();
+            (task, target)
+        };
+        let (tasks, targets) = keeps.iter().map(aimed).unzip();
+        let [lower, upper] = [lower, upper].map(Point::from_slice);
+        Self { robot, tasks, targets, lower, upper, linearized: Linearization::default() }
+    }
+
+    /// Moves `q` (n,) to a configuration at which all constraints hold; false if none was found near it.
+    pub fn bring(&mut self, q: &mut [f64]) -> bool {
+        let Self { robot, tasks, targets, lower, upper, linearized } = self;
+        let aims = Aims { tasks, targets };
+        let n = q.len();
+        linearized.project(q, [lower, upper], STEPS, |q, linearized| {
+            let assessment = aims.linearize(robot, q, linearized, |_| ());
+            (!assessment.score.solved).then(|| linearized.least_damping(n))
+        })
+    }
+}
