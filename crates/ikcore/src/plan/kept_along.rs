@@ -5,29 +5,31 @@ use super::plan::Plan;
 use crate::constraint::{Keep, KeepSweep};
 use crate::error::Result;
 use crate::robot::Robot;
-use crate::solver::Status;
 use crate::timing::Violation;
 
 impl Plan {
-    /// Certifies that `keeps` hold along the whole motion, unless that is known of it. Where one is broken, the plan has not succeeded.
+    /// Certifies that `keeps` hold along the whole motion, unless that was done. Adds the violation where one is broken, and returns it in
+    /// words: then the plan has not succeeded.
     ///
     /// # Errors
     /// None in practice: the joints are those of the robot.
-    pub(crate) fn note_kept(&mut self, robot: &Robot, keeps: &[Keep]) -> Result<()> {
+    pub(crate) fn note_kept(&mut self, robot: &Robot, keeps: &[Keep]) -> Result<Option<String>> {
         if keeps.is_empty() || !self.keeps.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         self.keeps = keeps.to_vec();
+        if !self.violations.is_empty() {
+            return Ok(None);
+        }
         let whole = [0.0, self.trajectory.duration()];
         let checked = KeepSweep::new(robot, keeps).check(&TimedMotion::new(&self.trajectory), whole);
-        let Err(broken) = checked else { return Ok(()) };
+        let Err(broken) = checked else { return Ok(None) };
         let (what, [value, bound], unit) =
             keeps[broken.keep].worst_at(robot, &configuration_at(&self.trajectory, broken.at)?);
-        self.violations.push(Violation { what, value, bound, unit: unit.into() });
-        if self.status == Status::Solved {
-            self.status = Status::Stalled;
-        }
-        Ok(())
+        let violation = Violation { what, value, bound, unit: unit.into() };
+        let said = violation.to_string();
+        self.violations.push(violation);
+        Ok(Some(said))
     }
 
     /// Bounds of the largest error of each entry of each task that is [kept](Self::keeps) (m, rad); NaN for entries that are free.
