@@ -9,11 +9,8 @@
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
 use crate::ik::RankedDescent;
-use crate::math::Columns;
-use crate::math::{
-    Frame,
-    box_step::{BoxStep, least_damping},
-};
+use crate::math::box_step::least_damping;
+use crate::math::{Columns, Frame};
 use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
 use crate::solver::Stop;
@@ -180,15 +177,13 @@ impl MidStepState {
             Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
-        let TaskBlock { columns, residual } = &*self.linearization;
-        let [lower, upper] = tick.context.ends();
-        let lambda = least_damping(&columns[..n]);
-        let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };
+        let (step, bounds) = (&self.linearization, tick.bounds());
+        let lambda = least_damping(&step.columns[..n]);
         let to = &mut self.trial.q;
         to.resize(n, 0.0);
         match preferred {
-            None => step.write(to),
-            Some(preferred) => step.write_near(preferred, to),
+            None => step.write_step(lambda, &found.q, bounds, to),
+            Some(preferred) => step.write_step_near(preferred, lambda, &found.q, bounds, to),
         }
         self.trial.update(tick.context.robot);
         found.evaluations += 1;

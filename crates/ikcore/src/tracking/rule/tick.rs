@@ -70,6 +70,7 @@ impl Tick<'_> {
         }
         let mut preferred = q.clone();
         self.goals.cost(self.context.robot, None, q, &mut preferred);
+        self.bounds().steepest(&mut preferred);
         preferred.iter_mut().zip(q).for_each(|(preferred, q)| *preferred = q - self.context.dt * *preferred);
         self.bounds().clip(&mut preferred);
         Some(preferred)
@@ -101,12 +102,14 @@ impl Tick<'_> {
         is_within
     }
 
-    /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt. The result is not assessed.
+    /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt, whatever the weights of the joints. The result is not
+    /// assessed.
     pub(super) fn descend(&mut self, found: &mut TickResult, bounds: &Bounds, stop: Stop) {
         let StepContext { robot, aims, .. } = self.context;
         let mut problem = Problem::new(robot, aims);
         let objective: &mut dyn Differentiable = &mut problem;
-        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let bounds = bounds.without_weights();
+        let mut evaluator = Evaluator::new(objective, &bounds, stop, self.rng, self.monitor);
         let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
         found.evaluations += evaluator.evaluations();
         found.iterations += evaluator.iterations();

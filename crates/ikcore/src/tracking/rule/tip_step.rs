@@ -57,7 +57,7 @@ impl TipStep {
     /// configuration where the targets leave the joints free, may raise it.
     fn gauss_newton(&mut self, found: &mut TickResult, preferred: Option<&Point>, tick: &Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
-        let ends = tick.context.ends();
+        let bounds = tick.bounds();
         for i in 0..MOST_STEPS {
             // At least one step: an arm that waits until it is out of its band would move in jerks.
             if i > 0 && found.is_solved() {
@@ -67,8 +67,8 @@ impl TipStep {
             let (lambda, preferred) = (at.least_damping(found.q.len()), preferred.filter(|_| i == 0));
             let mut q = found.q.clone();
             match preferred {
-                Some(preferred) => at.write_step_near(preferred, lambda, &found.q, ends, &mut q),
-                None => at.write_step(lambda, &found.q, ends, &mut q),
+                Some(preferred) => at.write_step_near(preferred, lambda, &found.q, bounds, &mut q),
+                None => at.write_step(lambda, &found.q, bounds, &mut q),
             }
             let assessment = aims.linearize(robot, &q, &mut self.trial, |_| ());
             found.evaluations += 1;
@@ -90,7 +90,7 @@ impl TipStep {
         let least = self.begin.least_damping(n);
         let lambda = least.max(LevenbergMarquardt::default().initial_damping * begin.value());
         let mut end = begin.q.clone();
-        self.begin.write_step(lambda, &begin.q, positions.ends(), &mut end);
+        self.begin.write_step(lambda, &begin.q, &positions, &mut end);
         let fraction = tick.fraction_within(&begin.q, &end);
         if fraction >= 1.0 {
             return false;
