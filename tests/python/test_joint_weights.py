@@ -17,6 +17,7 @@ ARM = np.array([0, -0.4, 0, -2.0, 0, 1.6, 0.8])
 PANDA = bik.Robot.named("panda")
 UR5 = bik.Robot.named("ur5e")
 MOBILE = PANDA.with_mobile_base("planar", lower=[-3, -3, -3.1], upper=[3, 3, 3.1], velocity=[0.8, 0.8, 1.0])
+FLOATING = PANDA.with_mobile_base("floating", lower=[-2, -2, -2, -3, -3, -3], upper=[2, 2, 2, 3, 3, 3], velocity=1.0)
 PAIR = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
 START = np.r_[0.5, -0.2, 0.4, ARM]
 BASE = slice(0, 3)
@@ -189,6 +190,30 @@ def test_small_steps_move_the_joints_that_cost_least(seed: int) -> None:
         expected = cheapest(MOBILE, before, np.r_[by, np.zeros(3)], weights)
         assert step.success
         assert np.abs(step.q - before - expected).max() < 1e-2 * np.abs(expected).max() + 1e-9
+
+
+@pytest.mark.parametrize("robot", ["planar", "floating"])
+@pytest.mark.parametrize("weight", [100.0, 1e6])
+@pytest.mark.parametrize("by", [0.01, 0.03, 0.1])
+def test_a_jump_that_the_arm_can_make_leaves_the_base(robot: str, weight: float, by: float) -> None:
+    base, arm = {"planar": (START[BASE], MOBILE), "floating": (np.zeros(6), FLOATING)}[robot]
+    start, count = np.r_[base, ARM], len(base)
+    weights = np.r_[np.full(count, weight), np.ones(7)]
+    target = shifted(arm, start, -by, by, 0)
+    for rate in (0.01, 0.001):
+        tracker = bik.Tracker(arm, start, dt=rate, joint_weights=weights)
+        assert any(tracker.step(target).success for _ in range(500))
+        assert np.abs(tracker.q[:count] - base).max() < 1e-3
+
+
+def test_a_jump_of_two_hands_leaves_the_torso() -> None:
+    q = np.clip(np.r_[np.zeros(2), ARM, ARM], PAIR.lower, PAIR.upper)
+    targets = {tip: pose.copy() for tip, pose in zip(PAIR.tips, PAIR.fk(q), strict=True)}
+    for pose, sign in zip(targets.values(), (1, -1), strict=True):
+        pose[:3, 3] += np.array([0.03, 0.02, 0.02]) * sign
+    tracker = bik.Tracker(PAIR, q, dt=0.01, joint_weights=np.r_[100.0, 100.0, np.ones(14)])
+    assert any(tracker.step(targets).success for _ in range(200))
+    assert np.abs(tracker.q[:2] - q[:2]).max() < 1e-3
 
 
 def test_a_heavier_base_never_moves_more() -> None:

@@ -4,7 +4,8 @@
 //! from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single evaluation per tick reaches
 //! micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain null-space motion. If the box or a
 //! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error. A pose of
-//! which one part comes first is then met in that order.
+//! which one part comes first is then met in that order. Joints with weights approach a far target that stands still first: heavy
+//! ones would otherwise make what the others cannot do in one tick.
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
@@ -83,6 +84,10 @@ pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResu
     }
     found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
+    if tick.takes_its_time() && tick.ranked().is_none() && memory.follow_approach(value_at_rest, &mut found, &tick) {
+        memory.hand_on(true);
+        return found;
+    }
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() && memory.enter_band(&mut found, &mut tick) {
         moved = true;

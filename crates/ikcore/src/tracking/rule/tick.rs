@@ -39,6 +39,11 @@ impl Tick<'_> {
         &self.context.tick_box.bounds
     }
 
+    /// Whether the joints that cost least have time to make the motion alone: they have weights, and the target stands still.
+    pub(super) fn takes_its_time(&self) -> bool {
+        self.bounds().weights().is_some() && self.targets.stand()
+    }
+
     /// Target pose, and the part of it that comes first where the whole cannot be met.
     pub(super) fn ranked(&self) -> Option<(Frame, First)> {
         let StepContext { robot, aims, .. } = self.context;

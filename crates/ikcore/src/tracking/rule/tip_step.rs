@@ -33,6 +33,9 @@ impl TipStep {
         begin.assessment = aims.linearize(robot, &begin.q, &mut self.begin, |_| ());
         begin.evaluations = 1;
         let mut found = begin.clone();
+        if tick.takes_its_time() && self.approach(&begin, &mut found, &tick) {
+            return found;
+        }
         let preferred = tick.preferred(&begin.q);
         if let Some(preferred) = &preferred {
             self.gauss_newton(&mut found, Some(preferred), &tick);
@@ -96,7 +99,7 @@ impl TipStep {
             return false;
         }
         let mut near = begin.clone();
-        let fraction = if tick.targets.moves() { 1.0 } else { fraction };
+        let fraction = if tick.targets.moves() && !tick.takes_its_time() { 1.0 } else { fraction };
         near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += fraction * (end - *q));
         tick_box.bounds.clip(&mut near.q);
         near.assess(robot, &aims);
