@@ -10,6 +10,7 @@
 //! | `plan` | [`Plan`]: the result |
 //! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `joined` | a plan, and motions before and after it |
+//! | `kept_along` | what holds along a finished motion |
 //! | `collision_checks` | margins, collision errors and certifiable motions |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
 //! | `search` | runs a solver on the cost of a plan and records its progress |
@@ -20,6 +21,7 @@ mod cost;
 mod deadline;
 mod endpoint;
 mod joined;
+mod kept_along;
 #[allow(clippy::module_inception)]
 mod plan;
 mod planar_arm;
@@ -30,7 +32,8 @@ mod straight_line;
 mod tpbso_options;
 
 pub(crate) use collision_checks::{
-    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_collision, too_near,
+    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_broken,
+    refuse_collision, too_near,
 };
 pub use cost::Cost;
 pub(crate) use cost::tip_travel_along;

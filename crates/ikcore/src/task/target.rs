@@ -1,5 +1,6 @@
 //! Targets of the tip.
 
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use crate::error::{Result, require_finite};
@@ -9,7 +10,7 @@ use crate::math::{Frame, Pose};
 pub type TargetRow = SmallVec<[Target; 1]>;
 
 /// Target of the tip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Target {
     /// Position (m); the orientation is free.
     Position([f64; 3]),
