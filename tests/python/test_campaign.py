@@ -23,6 +23,7 @@ CASES = {
     "clear_ticks": 1,
     "dead_ends": 6,
     "clear_plans": 2,
+    "held_arms": 6,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
@@ -113,6 +114,10 @@ SPOILED = {
     "dead_ends": (
         "away += 0.1",
         "the arm stays away from its target",
+    ),
+    "held_arms": (
+        "rates[-1], statuses[-1] = 0.01, bik.Status.CAPPED",
+        "a held arm moves on",
     ),
     "tracker_lives": (
         "log += [('q', tracker.q + 1.0)]",

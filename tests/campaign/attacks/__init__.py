@@ -10,6 +10,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    held_arms,
     joint_weights,
     kinematics,
     motion,
@@ -28,8 +29,7 @@ from . import (
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
-    *(own_points, readers, xacro_files, described, calibration, calls, command_line, units),
-    joint_weights,
+    *(held_arms, joint_weights, own_points, readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
