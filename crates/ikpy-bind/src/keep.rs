@@ -2,7 +2,7 @@
 
 use ikcore::constraint::Keep;
 use ikcore::math::Frame;
-use ikcore::math::pose::turning;
+use ikcore::math::pose::{rows, turning};
 use ikcore::robot::Robot;
 use ikcore::task::{NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use crate::convert::{point, pose_array, row, summary};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::ik::read_target;
-use crate::options::NewArguments;
+use crate::options::{NewArguments, list_text};
 use crate::robot::PyRobot;
 use crate::task::{read_task, task_object};
 use crate::tip_keys::{TipKey, in_words, key_object, read_key, subject, tips_in_words};
@@ -88,7 +88,12 @@ impl PyKeep {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let target = self.target(py)?.repr()?.to_string().replace('\n', "");
+        let each = self.targets.iter().map(|(key, target)| match key {
+            None => Ok(target_text(target)),
+            Some(key) => Ok(format!("{}: {}", key_object(py, key)?.repr()?, target_text(target))),
+        });
+        let each = each.collect::<PyResult<Vec<_>>>()?.join(", ");
+        let target = if let [(None, _)] = self.targets[..] { each } else { format!("{{{each}}}") };
         let task = self.task(py)?.map_or(Ok(String::new()), |task| task.repr().map(|text| format!(", {text}")))?;
         Ok(format!("Keep({target}{task})"))
     }
@@ -212,6 +217,16 @@ pub fn read_keeps(robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult
         return Ok(all);
     }
     one(value)
+}
+
+/// Formats a target in Python syntax.
+fn target_text(target: &Target) -> String {
+    match target {
+        Target::Position(position) => list_text(position),
+        Target::Pose(frame) | Target::Orientation(frame) | Target::Pointing { frame, .. } => {
+            format!("{:?}", rows(&(*frame).into()).as_chunks::<4>().0)
+        }
+    }
 }
 
 fn target_object<'py>(py: Python<'py>, target: &Target) -> PyResult<Bound<'py, PyAny>> {

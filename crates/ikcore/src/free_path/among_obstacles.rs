@@ -113,7 +113,7 @@ pub(super) fn plan(
                 } else {
                     let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
                     let straight = nearest.map(|nearest| &nearest.contact);
-                    (no_way::gap(trees.gap, trees.check.examined(), straight, margin), None)
+                    (no_way::gap(trees.gap, trees.check.examined(), straight, margin, &options.keeps), None)
                 };
             Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), own_points, ..plan }
         }

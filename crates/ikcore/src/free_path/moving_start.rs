@@ -8,7 +8,9 @@ use crate::limits::{Limits, ROUNDING, StartSlack};
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state_from, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
-use crate::plan::{Endpoint, Plan, PointToPointOptions, certify, joined, least_clearance};
+use crate::plan::{
+    EndName, Endpoint, Plan, PointToPointOptions, broken_along, certify, joined, least_clearance, refuse_broken,
+};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
@@ -49,15 +51,25 @@ pub(super) fn begin(
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
-    let mut is_free =
+    let robot = search.robot;
+    refuse_broken(&EndName::Start.of_target(), &options.keeps, robot, q)?;
+    let mut is_clear =
         |motion: &Trajectory| sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok());
+    let broken = |motion: &Trajectory| broken_along(robot, &options.keeps, motion);
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state_from(&from, &ArmState::at_rest(end), &limits, &taken).ok();
     let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
     let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
     motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
-    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
+    let mut first_free = None;
+    for (chosen, motion) in motions {
+        if broken(&motion)?.is_none() && is_clear(&motion) {
+            first_free = Some((chosen, motion));
+            break;
+        }
+    }
+    if let Some((chosen, trajectory)) = first_free {
         let least = match &mut sweep {
             Some((sweep, margin)) => least_clearance(sweep, &trajectory, Some(*margin))?,
             None => None,
@@ -72,7 +84,15 @@ pub(super) fn begin(
         return Ok(Beginning::Rest);
     }
     let braking = stop(&from, &limits)?;
-    if is_free(&braking) {
+    if let Some(broken) = broken(&braking)? {
+        let problem = message![
+            "at ",
+            Setting::StartVelocity,
+            format!(" the arm cannot stop within what is to be kept on the way: {broken}")
+        ];
+        return Err(Error::Infeasible { problem });
+    }
+    if is_clear(&braking) {
         return Ok(Beginning::Stop(braking));
     }
     let problem = message![

@@ -36,8 +36,8 @@ pub(super) fn broken_ends(pairs: &[EndPair], keeps: &[Keep], robot: &Robot) -> O
 }
 
 /// Describes the gap `left` between the trees from both ends after `examined` configurations, and the obstacle to the
-/// straight motion.
-pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: f64) -> String {
+/// straight motion. That none was found within `keeps` proves nothing.
+pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: f64, keeps: &[Keep]) -> String {
     let came = if left.is_finite() {
         format!("what was reached from both ends stays {} rad apart", number(left))
     } else {
@@ -45,5 +45,6 @@ pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: 
     };
     let in_the_way =
         straight.map_or(String::new(), |contact| format!("; on the straight way {}", contact.in_words(kept)));
-    format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
+    let none = if keeps.is_empty() { "" } else { "none found within what is to be kept on the way; " };
+    format!("the way from start to end: {none}after {examined} configurations {came}{in_the_way}")
 }

@@ -10,7 +10,13 @@ use crate::timing::Violation;
 use crate::trajectory::Trajectory;
 
 /// Certifies that all of `keeps` hold along a motion; the violation where one does not.
-fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -> Result<Option<Violation>> {
+///
+/// # Errors
+/// None in practice: the joints are those of the robot.
+pub(crate) fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -> Result<Option<Violation>> {
+    if keeps.is_empty() {
+        return Ok(None);
+    }
     let checked = KeepSweep::new(robot, keeps).check(&TimedMotion::new(motion), [0.0, motion.duration()]);
     let Err(broken) = checked else { return Ok(None) };
     let (what, [value, bound], unit) = keeps[broken.keep].worst_at(robot, &configuration_at(motion, broken.at)?);

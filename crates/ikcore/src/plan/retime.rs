@@ -2,6 +2,7 @@
 
 use super::collision_checks::{certify, too_near};
 use super::plan::{Freed, Plan};
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::message::message;
@@ -45,8 +46,21 @@ impl Plan {
         let freed = self.freed.map(|freed| Freed { until: freed.until * slower, ..freed });
         let mut retimed = Self { trajectory, cost, freed, elapsed: stopwatch.elapsed(), ..self.clone() };
         retimed.certify(robot, limits.limit_jerk())?;
+        retimed.certify_kept(robot)?;
         retimed.name_peak(&limits);
         Ok(retimed)
+    }
+
+    /// Checks that everything holds that the plan keeps on the way, and notes its largest errors.
+    fn certify_kept(&mut self, robot: &Robot) -> Result<()> {
+        let keeps: Vec<Keep> = self.kept.iter().map(|kept| kept.keep.clone()).collect();
+        self.note_kept(robot, &keeps)?;
+        self.violations.first().map_or(Ok(()), |broken| {
+            let problem = format!(
+                "the motion would not hold what the plan keeps on the way: {broken}; plan with these limits instead"
+            );
+            Err(Error::Infeasible { problem: problem.into() })
+        })
     }
 
     /// Checks that the motion keeps the margin. `smoothed` for jerk limits, it leaves the path a little.
