@@ -7,6 +7,7 @@ use super::bend::Bend;
 use super::gauge::Seen;
 use super::keep::Keep;
 use crate::kinematics::link_tree::FrameBuffer;
+use crate::math::Frame;
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 use crate::robot::Robot;
@@ -65,11 +66,6 @@ impl<'a> KeepSweep<'a> {
     pub fn new(robot: &'a Robot, keeps: &'a [Keep]) -> Self {
         let [change, off_line] = [(); 2].map(|()| Point::from_elem(0.0, robot.dof()));
         Self { robot, keeps, samples: vec![], change, off_line, intervals: 0, most: 0 }
-    }
-
-    /// The constraints.
-    pub(crate) fn keeps(&self) -> &'a [Keep] {
-        self.keeps
     }
 
     /// Number of intervals examined so far.
@@ -179,7 +175,7 @@ impl<'a> KeepSweep<'a> {
     ) -> Result<(), (f64, usize)> {
         let Self { robot, keeps, samples, .. } = self;
         if samples.len() == slot {
-            let nowhere = ([0.0; 3], keeps[0].seen(&crate::math::Frame::IDENTITY));
+            let nowhere = ([0.0; 3], keeps[0].seen(&Frame::IDENTITY));
             let q = Point::from_elem(0.0, robot.dof());
             samples.push(Sample { q, frames: robot.frame_buffer(), seen: vec![nowhere; keeps.len()] });
         }
@@ -187,7 +183,8 @@ impl<'a> KeepSweep<'a> {
         motion.write(at, q);
         robot.write_frames(q, frames);
         for (number, (keep, seen)) in keeps.iter().zip(seen).enumerate() {
-            *seen = (keep.origin(robot, q), keep.seen(&keep.frame(robot, q)));
+            let (frame, origin) = keep.place(robot, frames);
+            *seen = (origin, keep.seen(&frame));
             let mut values = keep.gauges.iter().map(|gauge| gauge.value(&seen.1));
             if !thresholds.sampled(number, &mut values) {
                 return Err((at, number));
@@ -238,6 +235,7 @@ impl Thresholds for Largest<'_> {
 mod tests {
     use super::*;
     use crate::load::UrdfOptions;
+    use crate::math::arithmetic::NoFma;
     use crate::math::pose;
     use crate::math::vector::point_between;
     use crate::obstacle::Edge;
@@ -279,8 +277,8 @@ mod tests {
         let mut draw = |most: f64| std::array::from_fn(|_| rng.uniform_in(-most, most));
         let whole = keep(subject, None, Tolerance::default(), &Target::Position([0.0; 3]));
         let here = whole.frame(robot, q);
-        let beside = crate::math::Frame::from(&pose::from_rpy(draw(0.4), draw(0.02)));
-        let target = Target::Pose(here.then::<crate::math::arithmetic::NoFma>(&beside));
+        let beside = Frame::from(&pose::from_rpy(draw(0.4), draw(0.02)));
+        let target = Target::Pose(here.then::<NoFma>(&beside));
         let both = Tolerance { position: tolerance, rotation: tolerance };
         let region = Region::new(here.origin.map(|p| p - tolerance), here.origin.map(|p| p + tolerance)).unwrap();
         let upright = TaskKind::Pointing { axis: [0.0, 0.6, 0.8] };

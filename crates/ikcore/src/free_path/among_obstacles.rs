@@ -97,7 +97,8 @@ pub(super) fn plan(
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
             let clearance = Some(Clearance::at_least(margin));
-            let plan = Plan { history, clearance, ..search.plan(trajectory, options.objective) };
+            let keeps = options.keeps.clone();
+            let plan = Plan { history, clearance, keeps, ..search.plan(trajectory, options.objective) };
             if is_lines { with_least_clearance(plan, &mut sweep, margin)? } else { plan }
         }
         Certified::Nothing(status) => {

@@ -3,13 +3,14 @@
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
+use crate::constraint::KeepSweep;
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Limits, ROUNDING, StartSlack};
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state_from, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{
-    EndName, Endpoint, Plan, PointToPointOptions, broken_along, certify, joined, least_clearance, refuse_broken,
+    EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance, refuse_broken,
 };
 use crate::robot::Robot;
 use crate::solver::Monitor;
@@ -47,29 +48,24 @@ pub(super) fn begin(
         });
     };
     check(search, velocity)?;
+    refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
-    let robot = search.robot;
-    refuse_broken(&EndName::Start.of_target(), &options.keeps, robot, q)?;
-    let mut is_clear =
-        |motion: &Trajectory| sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok());
-    let broken = |motion: &Trajectory| broken_along(robot, &options.keeps, motion);
+    let mut kept = (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps));
+    let mut is_free = |motion: &Trajectory| {
+        let whole = [0.0, motion.duration()];
+        kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
+            && sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
+    };
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state_from(&from, &ArmState::at_rest(end), &limits, &taken).ok();
     let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
     let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
     motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
-    let mut first_free = None;
-    for (chosen, motion) in motions {
-        if broken(&motion)?.is_none() && is_clear(&motion) {
-            first_free = Some((chosen, motion));
-            break;
-        }
-    }
-    if let Some((chosen, trajectory)) = first_free {
+    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
         let least = match &mut sweep {
             Some((sweep, margin)) => least_clearance(sweep, &trajectory, Some(*margin))?,
             None => None,
@@ -84,21 +80,17 @@ pub(super) fn begin(
         return Ok(Beginning::Rest);
     }
     let braking = stop(&from, &limits)?;
-    if let Some(broken) = broken(&braking)? {
-        let problem = message![
-            "at ",
-            Setting::StartVelocity,
-            format!(" the arm cannot stop within what is to be kept on the way: {broken}")
-        ];
-        return Err(Error::Infeasible { problem });
-    }
-    if is_clear(&braking) {
+    if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
     }
     let problem = message![
         "at ",
         Setting::StartVelocity,
-        " the arm cannot stop before it comes nearer to an obstacle than the margin"
+        if options.keeps.is_empty() {
+            " the arm cannot stop before it comes nearer to an obstacle than the margin"
+        } else {
+            " the arm cannot stop before it comes nearer to an obstacle than the margin, or breaks what is to be kept"
+        }
     ];
     Err(Error::Infeasible { problem })
 }

@@ -1,7 +1,7 @@
 //! What holds along a finished motion.
 
 use super::collision_checks::{TimedMotion, configuration_at};
-use super::plan::{Kept, Plan};
+use super::plan::Plan;
 use crate::constraint::{Keep, KeepSweep};
 use crate::error::Result;
 use crate::robot::Robot;
@@ -24,27 +24,30 @@ pub(crate) fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -
 }
 
 impl Plan {
-    /// Notes what of `keeps` holds along the whole motion. Where one is broken, the plan has not succeeded.
+    /// Certifies that `keeps` hold along the whole motion, unless that is known of it. Where one is broken, the plan has not succeeded.
     ///
     /// # Errors
     /// None in practice: the joints are those of the robot.
     pub(crate) fn note_kept(&mut self, robot: &Robot, keeps: &[Keep]) -> Result<()> {
-        if keeps.is_empty() {
+        if keeps.is_empty() || !self.keeps.is_empty() {
             return Ok(());
         }
-        let broken = broken_along(robot, keeps, &self.trajectory)?;
-        let holds = broken.is_none();
-        let largest = KeepSweep::new(robot, keeps)
-            .largest(&TimedMotion::new(&self.trajectory), [0.0, self.trajectory.duration()]);
-        let kept = |(keep, largest): (&Keep, Vec<f64>)| {
-            let largest = if holds { keep.at_most_tolerances(largest) } else { largest };
-            Kept { keep: keep.clone(), largest }
-        };
-        self.kept = keeps.iter().zip(largest).map(kept).collect();
-        self.violations.extend(broken);
-        if self.status == Status::Solved && !self.violations.is_empty() {
+        self.keeps = keeps.to_vec();
+        let Some(broken) = broken_along(robot, keeps, &self.trajectory)? else { return Ok(()) };
+        self.violations.push(broken);
+        if self.status == Status::Solved {
             self.status = Status::Stalled;
         }
         Ok(())
+    }
+
+    /// Bounds of the largest error of each entry of each task that is [kept](Self::keeps) (m, rad); NaN for entries that are free.
+    /// `robot` is the robot of the plan.
+    pub fn kept(&self, robot: &Robot) -> Vec<Vec<f64>> {
+        let whole = [0.0, self.trajectory.duration()];
+        let largest = KeepSweep::new(robot, &self.keeps).largest(&TimedMotion::new(&self.trajectory), whole);
+        let holds = self.violations.is_empty();
+        let known = |(keep, largest): (&Keep, Vec<f64>)| if holds { keep.at_most_tolerances(largest) } else { largest };
+        self.keeps.iter().zip(largest).map(known).collect()
     }
 }

@@ -2,7 +2,6 @@
 
 use super::collision_checks::{certify, too_near};
 use super::plan::{Freed, Plan};
-use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::limits::Limits;
 use crate::message::message;
@@ -51,9 +50,9 @@ impl Plan {
         Ok(retimed)
     }
 
-    /// Checks that everything holds that the plan keeps on the way, and notes its largest errors.
+    /// Checks that everything holds that the plan keeps on the way.
     fn certify_kept(&mut self, robot: &Robot) -> Result<()> {
-        let keeps: Vec<Keep> = self.kept.iter().map(|kept| kept.keep.clone()).collect();
+        let keeps = std::mem::take(&mut self.keeps);
         self.note_kept(robot, &keeps)?;
         self.violations.first().map_or(Ok(()), |broken| {
             let problem = format!(
