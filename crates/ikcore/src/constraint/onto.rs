@@ -38,6 +38,15 @@ impl<'a> Onto<'a> {
         Self { robot, tasks, targets, lower, upper, linearized: Linearization::default() }
     }
 
+    /// The projection on where `tasks` reach their targets too.
+    pub fn reaching(mut self, tasks: impl IntoIterator<Item = (CheckedTask, Target)>) -> Self {
+        for (task, target) in tasks {
+            self.tasks.push(task);
+            self.targets.push(target);
+        }
+        self
+    }
+
     /// Moves `q` (n,) to a configuration at which all constraints hold; false if none was found near it.
     pub fn bring(&mut self, q: &mut [f64]) -> bool {
         let Self { robot, tasks, targets, lower, upper, linearized } = self;

@@ -5,7 +5,6 @@ use super::plan::Plan;
 use crate::constraint::{Keep, KeepSweep};
 use crate::error::Result;
 use crate::robot::Robot;
-use crate::solver::Status;
 use crate::timing::Violation;
 use crate::trajectory::Trajectory;
 
@@ -24,21 +23,23 @@ pub(crate) fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -
 }
 
 impl Plan {
-    /// Certifies that `keeps` hold along the whole motion, unless that is known of it. Where one is broken, the plan has not succeeded.
+    /// Certifies that `keeps` hold along the whole motion, unless that was done. Adds the violation where one is broken, and returns it in
+    /// words: then the plan has not succeeded.
     ///
     /// # Errors
     /// None in practice: the joints are those of the robot.
-    pub(crate) fn note_kept(&mut self, robot: &Robot, keeps: &[Keep]) -> Result<()> {
+    pub(crate) fn note_kept(&mut self, robot: &Robot, keeps: &[Keep]) -> Result<Option<String>> {
         if keeps.is_empty() || !self.keeps.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         self.keeps = keeps.to_vec();
-        let Some(broken) = broken_along(robot, keeps, &self.trajectory)? else { return Ok(()) };
-        self.violations.push(broken);
-        if self.status == Status::Solved {
-            self.status = Status::Stalled;
+        if !self.violations.is_empty() {
+            return Ok(None);
         }
-        Ok(())
+        let Some(violation) = broken_along(robot, keeps, &self.trajectory)? else { return Ok(None) };
+        let said = violation.to_string();
+        self.violations.push(violation);
+        Ok(Some(said))
     }
 
     /// Bounds of the largest error of each entry of each task that is [kept](Self::keeps) (m, rad); NaN for entries that are free.

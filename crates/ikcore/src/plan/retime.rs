@@ -53,8 +53,7 @@ impl Plan {
     /// Checks that everything holds that the plan keeps on the way.
     fn certify_kept(&mut self, robot: &Robot) -> Result<()> {
         let keeps = std::mem::take(&mut self.keeps);
-        self.note_kept(robot, &keeps)?;
-        self.violations.first().map_or(Ok(()), |broken| {
+        self.note_kept(robot, &keeps)?.map_or(Ok(()), |broken| {
             let problem = format!(
                 "the motion would not hold what the plan keeps on the way: {broken}; plan with these limits instead"
             );
