@@ -36,7 +36,9 @@ for name, plan in plans.items():
     time, q, _, _ = plan.trajectory.sample(plan.trajectory.duration / 500)
     tilt = np.arccos(np.clip(-robot.fk(q)[:, 2, 2], -1.0, 1.0))
     axes.plot(time, np.degrees(tilt), label=name)
-    print(f"{name}: {plan.trajectory.duration:.2f} s, {np.degrees(tilt.max()):.1f} deg")
+    print(
+        f"{name}: {plan.trajectory.duration:.2f} s, {np.degrees(tilt.max()):.1f} deg"
+    )
 axes.axhline(np.degrees(most), color="gray", linestyle="--")
 axes.set(xlabel="time [s]", ylabel="tilt of the cup [deg]")
 axes.legend()

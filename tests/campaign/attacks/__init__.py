@@ -10,6 +10,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    kept,
     kinematics,
     motion,
     own_points,
@@ -26,8 +27,8 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
-    *(own_points, readers, xacro_files, described, calibration, calls, command_line, units),
+    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, kept),
+    *(clearance, own_points, readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
