@@ -23,8 +23,10 @@ parts, parent = ["<link name='base'/>"], "base"
 for name, axis, xyz in JOINTS:
     parts += [
         f"<link name='{name}_link'/><joint name='{name}' type='revolute'>",
-        f"<parent link='{parent}'/><child link='{name}_link'/><origin xyz='{xyz}'/>",
-        f"<axis xyz='{axis}'/><limit lower='-1.8' upper='1.8' velocity='3'/></joint>",
+        f"<parent link='{parent}'/><child link='{name}_link'/>",
+        f"<origin xyz='{xyz}'/>",
+        f"<axis xyz='{axis}'/>",
+        "<limit lower='-1.8' upper='1.8' velocity='3'/></joint>",
     ]
     parent = f"{name}_link"
 parts += [

@@ -90,7 +90,10 @@ def test_a_tilt_is_kept_and_told() -> None:
         (["--up", "z"], "--up names the axis that --tilt keeps vertical: give --tilt too"),
         (["--tilt", "0"], "--tilt must be positive, got 0.0"),
         (["--tilt", "ten"], "--tilt: 'ten' is not a number"),
-        (["--tilt", "200deg"], "--tilt must be at most pi, at which any axis is allowed, got 3.490658503988659; 90deg is 90 degrees"),
+        (
+            ["--tilt", "200deg"],
+            "--tilt must be at most pi, at which any axis is allowed, got 3.490658503988659; 90deg is 90 degrees",
+        ),
         (["--tilt", "10deg", "--up", "w"], "--up: expected x, y, z, -x, -y, -z or X,Y,Z, got 'w'"),
         (["--tilt", "10deg", "--up", "0,1"], "--up: expected 3 numbers separated by commas, got 2 in '0,1'"),
         (["--tilt", "10deg", "--up", "0,0,0"], "the length of --up must be positive, got 0.0"),
@@ -98,7 +101,10 @@ def test_a_tilt_is_kept_and_told() -> None:
             ["--tilt", "10deg", "--up", "z"],
             "start: what is to be kept on the way does not hold there: tilt 3.142 rad of at most 0.1745",
         ),
-        (["--tilt", "10deg", "--method", "tpbso"], "--tilt is held by --method minmax: --method tpbso checks nothing on the way"),
+        (
+            ["--tilt", "10deg", "--method", "tpbso"],
+            "--tilt is held by --method minmax: --method tpbso checks nothing on the way",
+        ),
     ],
 )  # fmt: skip
 def test_a_wrong_tilt_is_refused(options: list[str], message: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,11 @@ PANDA = bik.Robot.named("panda")
 Q = np.array([0.0, -0.5, 0.0, -2.2, 0.0, 1.7, 0.8])  # the hand points down
 ASIDE = np.array([1.2, -0.3, 0.0, -2.0, 0.0, 1.7, 0.8])
 RATED = bik.Limits(acceleration=5.0)
+
+
+def moved(q: Array, joint: int, by: float) -> Array:
+    """The configuration with one joint moved (rad)."""
+    return q + by * np.eye(len(q))[joint]
 
 
 def judge(arm: Arm, plan: bik.Plan, keeps: list[Keep]) -> None:
@@ -157,7 +163,7 @@ def test_a_straight_end_that_breaks_it_is_an_error() -> None:
     plane = PANDA.fk(Q)[2, 3]
     keep = Keep((0, 0, plane), tasks.Position(tolerance=[INF, INF, 0.02]))
     with pytest.raises(Invalid) as refused:
-        bik.plan_point_to_point(PANDA, start_q=Q, end_q=Q + [1, 0, 0, 0, 0, 0, 0], keep=keep, retreat=0.1)
+        bik.plan_point_to_point(PANDA, start_q=Q, end_q=moved(Q, 0, 1), keep=keep, retreat=0.1)
     assert str(refused.value).startswith(
         "start cannot be reached: no straight retreat of 0.1000 m: what is to be kept on the way does not hold on it: "
         "deviation in z is 0."
@@ -173,16 +179,16 @@ def test_it_holds_from_a_start_velocity() -> None:
     assert tilt_of(plan) <= plan.kept[0][1][3] <= 0.2
     with pytest.raises(bik.InfeasibleError, match=r"^infeasible: at start_qd the arm cannot stop"):
         bik.plan_point_to_point(PANDA, start_qd=[0, 0, 0, 0, 0, 2.0, 0], **options)
-    tilted = Q + [0, 0, 0, 0, 0, 0.3, 0]
+    tilted = moved(Q, 5, 0.3)
     with pytest.raises(Invalid, match=r"^start: .*: tilt 0\.30\d* rad of at most 0\.2000$"):
         bik.plan_point_to_point(PANDA, start_qd=[0.1] * 7, **(options | {"start_q": tilted}))
 
 
 def test_ends_may_be_poses_and_alternatives() -> None:
     keep = bik.upright(PANDA, tilt=0.2)
-    poses = [PANDA.fk(q) for q in (ASIDE, Q + [-1, 0, 0, 0, 0, 0, 0])]
+    poses = [PANDA.fk(q) for q in (ASIDE, moved(Q, 0, -1))]
     tipped = poses[0] @ bik.pose(rpy=[0.5, 0, 0])
-    for options in ({"end": poses[0]}, {"end": [tipped, *poses]}, {"end_q": [ASIDE + [0, 0, 0, 0, 0, 0.5, 0], ASIDE]}):
+    for options in ({"end": poses[0]}, {"end": [tipped, *poses]}, {"end_q": [moved(ASIDE, 5, 0.5), ASIDE]}):
         plan = bik.plan_point_to_point(PANDA, start_q=Q, keep=keep, limits=RATED, **options)
         assert plan.success, plan.message
         assert tilt_of(plan) <= plan.kept[0][1][3] <= 0.2
@@ -193,7 +199,7 @@ def test_a_batch_keeps_what_each_plan_keeps() -> None:
     cup, plane = bik.upright(PANDA, tilt=0.2), Keep((0, 0, 0.5), tasks.Position(tolerance=[INF, INF, 0.3]))
     problems: list[dict[str, Any]] = [
         {"start_q": Q, "end_q": ASIDE}, {"start_q": Q, "end_q": ASIDE, "keep": [cup, plane]},
-        {"start_q": Q, "end_q": ASIDE, "keep": []}, {"start_q": Q + [0, 0, 0, 0, 0, 0.5, 0], "end_q": ASIDE},
+        {"start_q": Q, "end_q": ASIDE, "keep": []}, {"start_q": moved(Q, 5, 0.5), "end_q": ASIDE},
     ]  # fmt: skip
     batch = bik.plan_batch(PANDA, problems, keep=cup, limits=RATED)
     assert [None if plan is None else [kept for kept, _ in plan.kept] for plan in batch] == [
@@ -235,7 +241,7 @@ def test_upright_turns_the_axis_to_the_direction(axis: tuple[float, float, float
 
 
 def test_an_end_that_breaks_it_says_by_how_much() -> None:
-    tipped = Q + [0, 0, 0, 0, 0, 0.3, 0]
+    tipped = moved(Q, 5, 0.3)
     keep = bik.upright(PANDA, tilt=0.2)
     says = "what is to be kept on the way does not hold there: tilt 0.3000 rad of at most 0.2000"
     for name, ends in {"start": (tipped, Q), "end": (Q, tipped)}.items():
@@ -251,7 +257,8 @@ def test_no_way_is_none_found_and_never_impossible() -> None:
     keep = [bik.upright(robot, tilt=0.05), Keep((0, 0, PANDA.fk(Q)[2, 3]), tasks.Position(tolerance=[INF, INF, 0.01]))]
     side = bik.obstacles.Box(center=(0.0, -0.6, 0.5), size=(2.4, 0.02, 3.0))
     plan = bik.plan_point_to_point(
-        robot, start_q=Q, end_q=other, keep=keep, obstacles=[wall, side], limits=RATED, stop=bik.Stop(max_evaluations=3000),
+        robot, start_q=Q, end_q=other, keep=keep, obstacles=[wall, side], limits=RATED,
+        stop=bik.Stop(max_evaluations=3000),
     )  # fmt: skip
     assert not plan.success
     assert plan.message.startswith("no clear plan for the way from start to end: none found in 3")
@@ -289,9 +296,9 @@ def test_a_keep_is_a_value(keep: Keep) -> None:
         assert repr(other) == repr(keep)
     assert sum(keep == other for other in KEEPS) == 1
     assert keep != "keep"
+    fixed: Any = keep
     with pytest.raises(AttributeError):
-        api_keep: Any = keep
-        api_keep.target = POSE
+        fixed.target = POSE
 
 
 def test_a_keep_says_what_it_was_given() -> None:
@@ -351,8 +358,8 @@ def test_a_robot_with_two_tips_names_the_one() -> None:
     with pytest.raises(Invalid) as refused:
         bik.plan_point_to_point(pair, start_q=start, end_q=end, keep=KEEPS[0], limits=RATED)
     assert str(refused.value) == (
-        "keep: robot 'pair_of_pandas' has several tips, 'left_tool', 'right_tool': give Keep a dict from tips to targets, "
-        "or upright one tip="
+        "keep: robot 'pair_of_pandas' has several tips, 'left_tool', 'right_tool': give Keep a dict from tips to "
+        "targets, or upright one tip="
     )
 
 
@@ -362,10 +369,8 @@ def test_the_judge_notices_a_motion_that_breaks_it() -> None:
     free = bik.plan_point_to_point(one.robot, start_q=start, end_q=end, limits=RATED)
     narrow = constraint("upright", one.poses(start[None])[0], 1e-3, np.random.default_rng(0))
 
-    class Spoiled:
-        trajectory = free.trajectory
-        kept = [(narrow, np.array([np.nan, np.nan, np.nan, 1e-3]))]
-
-    spoiled: Any = Spoiled()
+    spoiled: Any = SimpleNamespace(
+        trajectory=free.trajectory, kept=[(narrow, np.array([np.nan, np.nan, np.nan, 1e-3]))]
+    )
     with pytest.raises(AssertionError, match="beyond"):
         judge(one, spoiled, [narrow])

@@ -89,8 +89,9 @@ class KeptMotions(Attack):
                 task = f"bik.tasks.Position(tolerance=[inf] * 3, region={corners!r})"
             lines.append(f"keeps.append(bik.Keep({target}, {task}))")
         lines.append(
-            f"plan = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], keep=keeps, limits=bik.Limits({LIMITS[case['limits']]}),\n"
-            "    self_collision=False, stop=bik.Stop(max_evaluations=20000))"
+            f"limits, stop = bik.Limits({LIMITS[case['limits']]}), bik.Stop(max_evaluations=20000)\n"
+            "given = dict(start_q=q[0], end_q=q[1], keep=keeps, limits=limits, stop=stop)\n"
+            "plan = bik.plan_point_to_point(robot, self_collision=False, **given)"
         )
         if case["retime"]:
             lines.append("plan = plan.retime(bik.Limits(velocity=0.5, acceleration=2.0)) if plan.success else plan")
