@@ -119,7 +119,9 @@ def hand(robot: bik.Robot, side: float, tilt: float, wall: Any, rng: np.random.G
     place = [rng.uniform(0.35, 0.6), side * rng.uniform(0.2, 0.5), rng.uniform(0.15, 0.4)]
     target = lean @ bik.pose(rpy=[np.pi, 0.0, rng.uniform(-np.pi, np.pi)])
     target[:3, 3] = place
-    found = bik.solve(robot, target, start=robot.random_configurations(1, int(rng.integers(2**31)))[0], obstacles=[wall])
+    found = bik.solve(
+        robot, target, start=robot.random_configurations(1, int(rng.integers(2**31)))[0], obstacles=[wall]
+    )
     return found.q if found.success else None
 
 

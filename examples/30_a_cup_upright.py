@@ -2,9 +2,9 @@
 A cup that stays upright
 ========================
 
-The hand holds a cup, so that its axis points down all the way, within ten degrees.
-``keep=`` takes what must hold at every instant of a motion; ``upright`` is the tilt.
-The plan goes past a wall either way. It is certified between samples too, and
+The hand holds a cup, so its axis must point down all the way, within ten degrees.
+``keep=`` takes what holds at every instant of a motion, here ``upright``. Both
+plans go past a wall; only one spills. What is kept is certified between samples too, and
 ``plan.kept`` has bounds of the largest errors.
 """
 
@@ -36,7 +36,7 @@ for name, plan in plans.items():
     time, q, _, _ = plan.trajectory.sample(plan.trajectory.duration / 500)
     tilt = np.arccos(np.clip(-robot.fk(q)[:, 2, 2], -1.0, 1.0))
     axes.plot(time, np.degrees(tilt), label=name)
-    print(f"{name}: {plan.trajectory.duration:.2f} s, {np.degrees(tilt.max()):.1f} deg")
+    print(f"{name}: {time[-1]:.2f} s, tilt up to {np.degrees(tilt.max()):.1f} deg")
 axes.axhline(np.degrees(most), color="gray", linestyle="--")
 axes.set(xlabel="time [s]", ylabel="tilt of the cup [deg]")
 axes.legend()

@@ -23,19 +23,25 @@ parts, parent = ["<link name='base'/>"], "base"
 for name, axis, xyz in JOINTS:
     parts += [
         f"<link name='{name}_link'/><joint name='{name}' type='revolute'>",
-        f"<parent link='{parent}'/><child link='{name}_link'/><origin xyz='{xyz}'/>",
-        f"<axis xyz='{axis}'/><limit lower='-1.8' upper='1.8' velocity='3'/></joint>",
+        f"<parent link='{parent}'/><child link='{name}_link'/>",
+        f"<origin xyz='{xyz}'/>",
+        f"<axis xyz='{axis}'/>",
+        "<limit lower='-1.8' upper='1.8' velocity='3'/></joint>",
     ]
     parent = f"{name}_link"
 parts += [
     "<link name='hand'/><joint name='mount' type='fixed'>",
     f"<parent link='{parent}'/><child link='hand'/><origin xyz='0.1 0 0'/></joint>",
 ]
-robot = bik.Robot.from_urdf(f"<robot name='hobby'>{''.join(parts)}</robot>", tip="hand")
+robot = bik.Robot.from_urdf(
+    f"<robot name='hobby'>{''.join(parts)}</robot>", tip="hand"
+)
 
 # %%
 # Along a line to the side, the hand is asked to point straight ahead.
-asked = [bik.pose([0.25, y, 0.15], rpy=[0, 0.6, 0]) for y in np.linspace(0, 0.15, 31)]
+asked = [
+    bik.pose([0.25, y, 0.15], rpy=[0, 0.6, 0]) for y in np.linspace(0, 0.15, 31)
+]
 found = bik.solve_batch(robot, asked)
 print(found[0].status.name, "...", found[-1].status.name)
 print(found[-1].message)
@@ -43,7 +49,9 @@ print(f"off the place by at most {found.position_error.max():.1e} m")
 
 figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
 side = [1e3 * pose[1, 3] for pose in asked]
-axes.plot(side, np.degrees(found.rotation_error), label="as near as the place allows")
+axes.plot(
+    side, np.degrees(found.rotation_error), label="as near as the place allows"
+)
 axes.set(xlabel="place to the side [mm]", ylabel="off the orientation [deg]")
 axes.legend()
 

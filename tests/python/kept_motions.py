@@ -43,7 +43,15 @@ def _by_table(rows: list[tuple[float, float, float]], limit: float) -> list[plai
 
 
 UR5E = [(0, 0.1625, pi / 2), (-0.425, 0, 0), (-0.3922, 0, 0), (0, 0.1333, pi / 2), (0, 0.0997, -pi / 2), (0, 0, 0)]
-IIWA = [(0, 0.36, -pi / 2), (0, 0, pi / 2), (0, 0.42, pi / 2), (0, 0, -pi / 2), (0, 0.4, -pi / 2), (0, 0, pi / 2), (0, 0, 0)]
+IIWA = [
+    (0, 0.36, -pi / 2),
+    (0, 0, pi / 2),
+    (0, 0.42, pi / 2),
+    (0, 0, -pi / 2),
+    (0, 0.4, -pi / 2),
+    (0, 0, pi / 2),
+    (0, 0, 0),
+]
 ARMS = {
     "panda": [_joint(xyz, (roll, 0, 0), lower, upper) for xyz, roll, lower, upper in PANDA],
     "ur5e": _by_table(UR5E, 2 * pi),
@@ -117,7 +125,9 @@ def samples(plan: bik.Plan, count: int = 5000) -> Array:
 KINDS = ("upright", "plane", "region", "yaw_free", "box", "whole")
 
 
-def constraint(kind: str, pose: Array, tolerance: float, random: np.random.Generator, *, at_limit: bool = False) -> bik.Keep:
+def constraint(
+    kind: str, pose: Array, tolerance: float, random: np.random.Generator, *, at_limit: bool = False
+) -> bik.Keep:
     """Returns a constraint that holds at a pose of the tip; `at_limit`: just so, its error is the tolerance."""
     beside = 1.0 if at_limit else float(random.choice([0.0, 0.5, random.random()]))
     normal = [(1, 0, 0), (0, 1, 0), (0, 0, 1)][random.integers(3)] if random.random() < 0.5 else random.normal(size=3)

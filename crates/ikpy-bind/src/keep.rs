@@ -161,7 +161,8 @@ impl PyKeep {
 ///     A `Keep`, for `keep=` of `plan_point_to_point` and others.
 ///
 /// Raises:
-///     InvalidInputError: an axis or a direction of length zero; a tilt that is not positive, or beyond pi; an unknown tip, or none of several.
+///     InvalidInputError: an axis or a direction of length zero; a tilt that is not positive, or beyond pi; no tip of several.
+///     UnknownNameError: a tip that the robot does not have.
 ///
 /// For example:
 ///

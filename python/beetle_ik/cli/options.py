@@ -114,7 +114,7 @@ Up = Annotated[
     str | None,
     typer.Option(
         metavar="AXIS",
-        help="Axis of the tip that --tilt keeps up: x, y, z, -x, -y, -z or X,Y,Z; default: -z, as of a hand that hangs.",
+        help="Axis of the tip that --tilt keeps up: x, y, z, -x, -y, -z or X,Y,Z; default: -z, a hand that hangs.",
     ),
 ]
 
