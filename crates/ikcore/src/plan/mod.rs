@@ -32,7 +32,7 @@ mod straight_line;
 mod tpbso_options;
 
 pub(crate) use collision_checks::{
-    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_broken,
+    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space,
     refuse_collision, too_near,
 };
 pub use cost::Cost;
