@@ -88,6 +88,16 @@ impl Keep {
         Ok(Self { given, task, target, gauges, entries })
     }
 
+    /// The task, for a tip or for one tip seen from another.
+    pub fn task(&self) -> &NamedTask {
+        &self.given.task
+    }
+
+    /// The target, as it was given.
+    pub fn target(&self) -> &Target {
+        &self.given.target
+    }
+
     /// Checks that the robot has the tips that it names.
     ///
     /// # Errors

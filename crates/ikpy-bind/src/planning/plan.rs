@@ -3,15 +3,16 @@
 use std::sync::OnceLock;
 
 use ikcore::obstacle::Clearance;
-use ikcore::planning::Plan;
+use ikcore::planning::{Kept, Plan};
 use ikcore::stored::to_bytes;
-use numpy::PyArrayDyn;
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::violation::PyViolation;
-use crate::convert::table;
+use crate::convert::{row, table};
 use crate::error::raise;
+use crate::keep::PyKeep;
 use crate::limits::{PyLimits, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
 use crate::obstacle::PyNearest;
@@ -126,6 +127,16 @@ impl PyPlan {
     #[getter]
     fn freed(&self) -> Option<(f64, f64)> {
         self.core.freed.map(|freed| (freed.clearance, freed.until))
+    }
+
+    /// What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+    /// the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
+    /// at most a hundredth of the tolerance too large.
+    #[getter]
+    fn kept<'py>(&self, py: Python<'py>) -> Vec<(PyKeep, Bound<'py, PyArray1<f64>>)> {
+        let robot = &self.robot.get().core;
+        let pair = |Kept { keep, largest }: &Kept| (PyKeep::from_core(keep, robot), row(py, largest.clone()));
+        self.core.kept.iter().map(pair).collect()
     }
 
     /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.
