@@ -174,6 +174,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "limits",
             "motion",
             "obstacle",
+            "constraint",
             "shape",
             "manipulability",
             "task",

@@ -10,6 +10,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    keeping,
     kinematics,
     motion,
     own_points,
@@ -27,7 +28,7 @@ from . import (
 
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
-    *(own_points, readers, xacro_files, described, calibration, calls, command_line, units),
+    *(keeping, own_points, readers, xacro_files, described, calibration, calls, command_line, units),
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -142,6 +142,17 @@ impl Keep {
             .map(|gauge| gauge.in_words(gauge.value(&seen)))
     }
 
+    /// The error at `q` (n,) of whose tolerance the least is left, in words, and what is left: a fraction, of a region the distance (m).
+    pub(crate) fn tightest_at(&self, robot: &Robot, q: &[f64]) -> Option<(f64, String)> {
+        let seen = self.seen(&self.frame(robot, q));
+        let left = |gauge: &&Gauge| {
+            let left = gauge.tolerance - gauge.value(&seen);
+            if gauge.is_of_task() { left / gauge.tolerance.max(f64::MIN_POSITIVE) } else { left }
+        };
+        let tightest = self.gauges.iter().min_by(|one, other| left(one).total_cmp(&left(other)))?;
+        Some((left(&tightest), tightest.in_words(tightest.value(&seen))))
+    }
+
     /// The error that is farthest beyond its tolerance at `q` (n,), or nearest to it, its value there and its tolerance, and the unit.
     pub(crate) fn worst_at(&self, robot: &Robot, q: &[f64]) -> (String, [f64; 2], &'static str) {
         let seen = self.seen(&self.frame(robot, q));

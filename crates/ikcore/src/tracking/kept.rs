@@ -8,12 +8,11 @@ use std::sync::Arc;
 use super::around_arm::{PACE, Response};
 use super::step_context::StepContext;
 use crate::constraint::{Keep, KeepRow, KeepScratch, KeepSweep};
-use crate::math::vector::dot;
 use crate::math::Columns;
 use crate::math::row_step::{Row, SOFTNESS};
+use crate::math::vector::dot;
 use crate::obstacle::{Edge, JointMotion};
 use crate::robot::Robot;
-use crate::wording::number;
 
 /// What is left of a tolerance at the rest configuration (rad, m), desired and required, and as fractions of the tolerance if that is less:
 /// leaves room for the certificate.
@@ -53,10 +52,8 @@ impl Kept {
 
     /// The error at `q` that is nearest to its tolerance, in words.
     pub fn tightest_at(&self, q: &[f64]) -> Option<String> {
-        let worst = self.keeps.iter().map(|keep| keep.worst_at(&self.robot, q));
-        let left = |[value, most]: [f64; 2]| (most - value) / most.max(f64::MIN_POSITIVE);
-        let (what, [value, most], unit) = worst.min_by(|one, other| left(one.1).total_cmp(&left(other.1)))?;
-        Some(format!("{what} {} {unit} of at most {}", number(value), number(most)))
+        let each = self.keeps.iter().filter_map(|keep| keep.tightest_at(&self.robot, q));
+        each.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, error)| error)
     }
 
     /// Intervals that certificates have examined so far.

@@ -1,5 +1,6 @@
 //! Reading of the arguments that `track` and `Tracker` share.
 
+use ikcore::constraint::Keep;
 use ikcore::limits::{LimitAt, Limits};
 use ikcore::obstacle::Surroundings;
 use ikcore::task::{Task, Tolerance};
@@ -20,6 +21,7 @@ pub struct TrackArguments<'a, 'py> {
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub surroundings: Surroundings,
+    pub keeps: Vec<Keep>,
     pub recover: bool,
     pub seed: i128,
     pub limit_at: &'a str,
@@ -37,6 +39,7 @@ impl TrackArguments<'_, '_> {
             tolerance,
             limits,
             surroundings: self.surroundings,
+            keeps: self.keeps,
             ease: false,
             start_slack: read_slack(self.start_slack)?,
             recover: self.recover,
