@@ -151,6 +151,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         &[
             "robot",
             "limits",
+            "constraint",
             "obstacle",
             "task",
             "solver",

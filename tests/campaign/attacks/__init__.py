@@ -10,6 +10,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    joint_weights,
     keeping,
     kinematics,
     motion,
@@ -29,6 +30,7 @@ from . import (
 _MODULES = (
     *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
     *(keeping, own_points, readers, xacro_files, described, calibration, calls, command_line, units),
+    joint_weights,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -1,14 +1,14 @@
 //! One error of a task: its value, and its bound between two configurations.
 //!
 //! Distances, coordinates and the chords of angles are convex functions of where a point or a unit vector is. So between two
-//! configurations they exceed the larger of their values there by no more than the [`Bend`]. Entries of a rotation vector are not
+//! configurations they exceed the larger of their values there by no more than the [`TipBend`]. Entries of a rotation vector are not
 //! convex; the bound of their second derivative is at [`turned`]. The same holds for all configurations between the control points of a
 //! spline, where the bend is that of a motion that reaches across all of them.
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::bend::Bend;
 use super::drift::Drift;
+use super::tip_bend::TipBend;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{norm, rotation_between};
@@ -209,7 +209,7 @@ impl Gauge {
     }
 
     /// A bound of the value on all configurations between these; infinite if nothing can be said.
-    pub fn bound<'s>(&self, points: impl Iterator<Item = &'s Seen> + Clone, bend: &Bend) -> f64 {
+    pub fn bound<'s>(&self, points: impl Iterator<Item = &'s Seen> + Clone, bend: &TipBend) -> f64 {
         match self.kind {
             Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => {
                 highest(points.map(|seen| self.value(seen)), bend.point, bend)
@@ -230,7 +230,7 @@ impl Gauge {
 ///
 /// Without motion off the line, the excess is also at most 4 `excess` times the weights of all points but one, whichever that is. So the
 /// function does not exceed the largest value where all others are lower by 4 `excess`: an error at its tolerance can be left.
-fn highest(values: impl Iterator<Item = f64>, excess: f64, bend: &Bend) -> f64 {
+fn highest(values: impl Iterator<Item = f64>, excess: f64, bend: &TipBend) -> f64 {
     let [mut first, mut second] = [f64::NEG_INFINITY; 2];
     for value in values {
         (first, second) = if value > first { (value, first) } else { (first, second.max(value)) };
@@ -253,7 +253,7 @@ fn angle_of_chord(chord: f64) -> f64 {
 ///
 /// A rotation by more than half a turn is one by less about the opposite axis, with entries that are no larger: the bound counts
 /// them beyond half a turn, where they go on smoothly.
-fn turned<'s>(vectors: impl Iterator<Item = &'s [f64; 3]> + Clone, k: usize, bend: &Bend) -> f64 {
+fn turned<'s>(vectors: impl Iterator<Item = &'s [f64; 3]> + Clone, k: usize, bend: &TipBend) -> f64 {
     let most = vectors.clone().map(norm).fold(0.0, f64::max) + bend.turn + bend.turn_off_line;
     if most > MOST_TURNED {
         return f64::INFINITY;

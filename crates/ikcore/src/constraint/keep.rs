@@ -208,12 +208,15 @@ impl Keep {
         self.task.frame(robot, q)
     }
 
-    /// Origin (m) of the moving subject at `q`, in the base.
-    pub(super) fn origin(&self, robot: &Robot, q: &[f64]) -> [f64; 3] {
-        match self.task.subject {
-            Subject::Tip(_) => self.frame(robot, q).origin,
-            Subject::Pair { from, .. } => robot.tip_of(from, q).transform::<NoFma>(&self.frame(robot, q).origin),
-        }
+    /// Frame of the subject, and its origin in the base (m), with the moving elements of `robot` at `frames`.
+    pub(super) fn place(&self, robot: &Robot, frames: &[Frame]) -> (Frame, [f64; 3]) {
+        let tip = |tip: usize| robot.tip_among(tip, frames);
+        let frame = self.task.frame_of(tip);
+        let origin = match self.task.subject {
+            Subject::Tip(_) => frame.origin,
+            Subject::Pair { from, .. } => tip(from).transform::<NoFma>(&frame.origin),
+        };
+        (frame, origin)
     }
 
     /// The subject at `frame`, as the target sees it.

@@ -3,10 +3,11 @@
 //! Errors at both ends of an interval and the bend of the motion between them bound them inside. Where a bound is too large, the
 //! interval is halved: it then falls to a quarter. A spline stays between its control points, those just outside of the interval included.
 
-use super::bend::Bend;
 use super::gauge::Seen;
 use super::keep::Keep;
+use super::tip_bend::TipBend;
 use crate::kinematics::link_tree::FrameBuffer;
+use crate::math::Frame;
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 use crate::robot::Robot;
@@ -83,11 +84,6 @@ impl<'a> KeepSweep<'a> {
     /// The scratch, for the next one.
     pub(crate) fn into_scratch(self) -> KeepScratch {
         self.scratch
-    }
-
-    /// The constraints.
-    pub(crate) fn keeps(&self) -> &'a [Keep] {
-        self.keeps
     }
 
     /// Number of intervals examined so far.
@@ -195,7 +191,7 @@ impl<'a> KeepSweep<'a> {
         }
         let is_open = |(number, keep): &(usize, &Keep)| {
             let (origin, frames) = (&first.seen[*number].0, &first.frames);
-            let bend = Bend::of(robot, keep.subject(), (origin, frames), [change, off_line]);
+            let bend = TipBend::of(robot, keep.subject(), (origin, frames), [change, off_line]);
             let points = [first, last].into_iter().chain(beside).map(|sample| &sample.seen[*number].1);
             let bounds = keep.gauges.iter().map(|gauge| gauge.bound(points.clone(), &bend));
             !bounds.enumerate().all(|(gauge, bound)| thresholds.takes(*number, gauge, bound))
@@ -231,7 +227,7 @@ fn write_sample(
     (motion, at): (&impl JointMotion, f64),
 ) {
     if samples.len() == slot {
-        let nowhere = ([0.0; 3], keeps[0].seen(&crate::math::Frame::IDENTITY));
+        let nowhere = ([0.0; 3], keeps[0].seen(&Frame::IDENTITY));
         let q = Point::from_elem(0.0, robot.dof());
         samples.push(Sample { q, frames: robot.frame_buffer(), seen: vec![nowhere; keeps.len()] });
     }
@@ -239,7 +235,8 @@ fn write_sample(
     motion.write(at, q);
     robot.write_frames(q, frames);
     for (keep, seen) in keeps.iter().zip(seen) {
-        *seen = (keep.origin(robot, q), keep.seen(&keep.frame(robot, q)));
+        let (frame, origin) = keep.place(robot, frames);
+        *seen = (origin, keep.seen(&frame));
     }
 }
 
@@ -284,6 +281,7 @@ impl Thresholds for Largest<'_> {
 mod tests {
     use super::*;
     use crate::load::UrdfOptions;
+    use crate::math::arithmetic::NoFma;
     use crate::math::pose;
     use crate::math::vector::point_between;
     use crate::obstacle::Edge;
@@ -325,8 +323,8 @@ mod tests {
         let mut draw = |most: f64| std::array::from_fn(|_| rng.uniform_in(-most, most));
         let whole = keep(subject, None, Tolerance::default(), &Target::Position([0.0; 3]));
         let here = whole.frame(robot, q);
-        let beside = crate::math::Frame::from(&pose::from_rpy(draw(0.4), draw(0.02)));
-        let target = Target::Pose(here.then::<crate::math::arithmetic::NoFma>(&beside));
+        let beside = Frame::from(&pose::from_rpy(draw(0.4), draw(0.02)));
+        let target = Target::Pose(here.then::<NoFma>(&beside));
         let both = Tolerance { position: tolerance, rotation: tolerance };
         let region = Region::new(here.origin.map(|p| p - tolerance), here.origin.map(|p| p + tolerance)).unwrap();
         let upright = TaskKind::Pointing { axis: [0.0, 0.6, 0.8] };

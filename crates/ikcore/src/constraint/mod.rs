@@ -8,19 +8,19 @@
 //! | `keep` | [`Keep`]: a task and its target |
 //! | `gauge` | one error of a task: its value, and its bound between two configurations |
 //! | `drift` | how a joint changes the errors: their slopes |
-//! | `bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
+//! | `tip_bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `onto` | configurations moved to where constraints hold |
 
-mod bend;
 mod drift;
 mod gauge;
 mod keep;
 mod keep_sweep;
 mod onto;
+mod tip_bend;
 
-pub(crate) use keep::{KeepRow, refuse_broken};
 pub use keep::Keep;
-pub use keep_sweep::{Broken, KeepSweep};
+pub(crate) use keep::{KeepRow, refuse_broken};
 pub(crate) use keep_sweep::KeepScratch;
+pub use keep_sweep::{Broken, KeepSweep};
 pub(crate) use onto::Onto;

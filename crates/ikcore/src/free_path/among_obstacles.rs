@@ -98,14 +98,19 @@ pub(super) fn plan(
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
             let clearance = Some(Clearance::at_least(margin));
-            let plan = Plan { history, clearance, ..search.plan(trajectory, options.objective) };
+            let keeps = options.keeps.clone();
+            let plan = Plan { history, clearance, keeps, ..search.plan(trajectory, options.objective) };
             if is_lines { with_least_clearance(plan, &mut sweep, margin)? } else { plan }
         }
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
-            let plan = with_least_clearance(plan, &mut sweep, margin)?;
+            let mut plan = with_least_clearance(plan, &mut sweep, margin)?;
+            let broken = plan.note_kept(robot, &options.keeps)?;
+            if plan.status == Status::Solved && broken.is_some() {
+                plan.status = status;
+            }
             let (obstruction, own_points) =
                 if let (true, Some(broken)) = (open.is_empty(), no_way::broken_ends(&pairs, &options.keeps, robot)) {
                     (broken, None)
@@ -113,8 +118,8 @@ pub(super) fn plan(
                     no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
                 } else {
                     let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
-                    let straight = nearest.map(|nearest| &nearest.contact);
-                    (no_way::gap(trees.gap, trees.check.examined(), straight, margin), None)
+                    let contact = nearest.map(|nearest| nearest.contact.in_words(margin));
+                    (no_way::gap(trees.gap, trees.check.examined(), contact.or(broken)), None)
                 };
             Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), own_points, ..plan }
         }

@@ -1,7 +1,6 @@
 //! Certified timings of a path: they keep its margin and its constraints at every instant.
 
-use super::line_check::LineCheck;
-use crate::constraint::KeepSweep;
+use super::line_check::{Kept, LineCheck};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::ClearanceSweep;
@@ -29,7 +28,7 @@ pub(super) struct Timing<'s, 'a> {
     pub limits: &'s ConstantLimits,
     pub sweep: &'s mut ClearanceSweep<'a>,
     /// Constraints to keep, if there are any.
-    pub kept: Option<&'s mut KeepSweep<'a>>,
+    pub kept: Option<&'s mut Kept<'a>>,
     /// Distance to keep (m).
     pub margin: f64,
     pub deadline: Deadline,
@@ -67,6 +66,10 @@ impl Timing<'_, '_> {
     /// constraint, or else with a stop at each corner. `None` if a line of the path does.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
         let TimedPath { path, mut fractions, motion } = timed;
+        if let Some(kept) = self.kept.as_mut().filter(|kept| kept.is_narrow) {
+            let followed = kept.followed(&motion, self.limits)?;
+            return Ok(followed.filter(|motion| self.first_contact(motion).is_none()));
+        }
         let Some(mut fault) = self.first_fault(&motion) else { return Ok(Some(motion)) };
         let stopping = path.with_stops(self.limits)?;
         let mut blended = motion;
@@ -91,11 +94,17 @@ impl Timing<'_, '_> {
     /// The time at which a motion comes too near to something or leaves a constraint (s), if any.
     fn first_fault(&mut self, motion: &Trajectory) -> Option<f64> {
         let (timed, whole) = (TimedMotion::new(motion), [0.0, motion.duration()]);
-        let broken = self.kept.as_mut().and_then(|kept| kept.check(&timed, whole).err());
+        let broken = self.kept.as_mut().and_then(|kept| kept.sweep.check(&timed, whole).err());
         if let Some(broken) = broken {
             return Some(broken.at);
         }
-        self.sweep.check(&timed, whole, self.margin).err().map(|near| near.at)
+        self.first_contact(motion)
+    }
+
+    /// The time at which a motion comes too near to something (s), if any.
+    fn first_contact(&mut self, motion: &Trajectory) -> Option<f64> {
+        let checked = self.sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], self.margin);
+        checked.err().map(|near| near.at)
     }
 }
 

@@ -19,14 +19,19 @@ pub(super) struct LineCheck<'a> {
 pub(super) struct Kept<'a> {
     pub sweep: KeepSweep<'a>,
     pub onto: Onto<'a>,
+    /// Whether they leave straight lines no room.
+    pub is_narrow: bool,
 }
 
 impl<'a> Kept<'a> {
     /// The constraints of a path of `robot` with its joints in these ranges; `None` without any.
     pub fn of(robot: &'a Robot, keeps: &'a [Keep], ranges: &[(f64, f64)]) -> Option<Self> {
         let (lower, upper): (Vec<f64>, Vec<f64>) = ranges.iter().copied().unzip();
-        let of_keeps = || Self { sweep: KeepSweep::new(robot, keeps), onto: Onto::new(robot, keeps, [&lower, &upper]) };
-        (!keeps.is_empty()).then(of_keeps)
+        (!keeps.is_empty()).then(|| Self {
+            sweep: KeepSweep::new(robot, keeps),
+            onto: Onto::new(robot, keeps, [&lower, &upper]),
+            is_narrow: keeps.iter().any(Keep::is_narrow),
+        })
     }
 }
 
@@ -38,7 +43,10 @@ impl<'a> LineCheck<'a> {
 
     /// Whether a line is clear and within the constraints; `from` is known to be both.
     pub fn is_clear(&mut self, from: &[f64], to: &[f64]) -> bool {
-        self.is_kept(from, to) && self.clear.is_clear(from, to)
+        match &self.kept {
+            Some(kept) if kept.is_narrow => self.is_clear_way(from, to),
+            _ => self.is_kept(from, to) && self.clear.is_clear(from, to),
+        }
     }
 
     fn is_kept(&mut self, from: &[f64], to: &[f64]) -> bool {

@@ -14,6 +14,7 @@
 //! | [`moving_start`] | motions that begin at a velocity |
 //! | [`line_check`] | whether a straight line can be part of a path |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`narrow_way`] | motions within constraints that leave straight lines no room |
 //! | [`shortening`] | shortcuts |
 //! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
 
@@ -27,6 +28,7 @@ mod least_displacement;
 mod line_check;
 mod minmax_planner;
 mod moving_start;
+mod narrow_way;
 mod no_way;
 mod pair_search;
 mod path_search;

@@ -35,15 +35,14 @@ pub(super) fn broken_ends(pairs: &[EndPair], keeps: &[Keep], robot: &Robot) -> O
     Some(format!("{name}: no configuration was found at which holds what is to be kept; there {first}"))
 }
 
-/// Describes the gap `left` between the trees from both ends after `examined` configurations, and the obstacle to the
+/// Describes the gap `left` between the trees from both ends after `examined` configurations, and what is wrong with the
 /// straight motion.
-pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: f64) -> String {
+pub(super) fn gap(left: f64, examined: usize, straight: Option<String>) -> String {
     let came = if left.is_finite() {
         format!("what was reached from both ends stays {} rad apart", number(left))
     } else {
         "nothing was reached from either end".into()
     };
-    let in_the_way =
-        straight.map_or(String::new(), |contact| format!("; on the straight way {}", contact.in_words(kept)));
+    let in_the_way = straight.map_or(String::new(), |wrong| format!("; on the straight way {wrong}"));
     format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
 }

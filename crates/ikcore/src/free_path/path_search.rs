@@ -248,7 +248,7 @@ impl<'a> PathSearch<'_, 'a> {
 
     fn timing(&mut self) -> Timing<'_, 'a> {
         let Self { trees, search, sweep, margin, .. } = self;
-        let kept = trees.check.kept.as_mut().map(|kept| &mut kept.sweep);
+        let kept = trees.check.kept.as_mut();
         Timing { limits: search.limits, sweep, kept, margin: *margin, deadline: search.deadline }
     }
 }

@@ -141,10 +141,18 @@ impl Variation {
     }
 
     /// Returns the path with blends as wide as seems clear, if it is clear and better than `best`.
-    fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut LineCheck) -> Option<BlendedPath> {
+    fn improvement_of(
+        mut self,
+        best: &BlendedPath,
+        measure: &PathMeasure,
+        check: &mut LineCheck,
+    ) -> Option<BlendedPath> {
         let mut fractions = self.fractions(&best.fractions);
         // Narrower blends only cost more.
         if measure.of(&self.path, &fractions) >= best.cost {
+            return None;
+        }
+        if !self.path.0[self.new.clone()].iter_mut().all(|point| check.bring(point)) {
             return None;
         }
         let changed = &self.path.0[self.new.start - 1..=self.new.end];

@@ -41,7 +41,7 @@ pub(crate) use deadline::Deadline;
 pub use endpoint::Endpoint;
 pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
-pub use plan::{Freed, Improvement, JointTurned, Kept, Peak, Plan};
+pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};
 pub use planner_options::{AlongPathMethod, AlongPathOptions, EndTurns, PointToPointMethod, PointToPointOptions};

@@ -46,8 +46,8 @@ pub struct Plan {
     pub end_turned: Vec<JointTurned>,
     /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
-    /// What holds at every instant of the motion.
-    pub kept: Vec<Kept>,
+    /// What holds at every instant of the motion. [`kept`](Self::kept) finds the largest errors.
+    pub keeps: Vec<Keep>,
     /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
@@ -70,15 +70,6 @@ pub struct Plan {
     pub evaluations: usize,
     /// Time taken.
     pub elapsed: Duration,
-}
-
-/// A task that holds at every instant of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
-    /// The task and its target.
-    pub keep: Keep,
-    /// Bounds of the largest error of each entry of the task (m, rad); NaN for entries that are free.
-    pub largest: Vec<f64>,
 }
 
 /// The way out of a contact at the start of a plan.
@@ -143,7 +134,7 @@ impl Plan {
             start_outside: vec![],
             end_turned: vec![],
             freed: None,
-            kept: vec![],
+            keeps: vec![],
             surroundings: None,
             accuracy: None,
             reference: None,

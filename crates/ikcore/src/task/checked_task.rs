@@ -105,7 +105,11 @@ impl CheckedTask {
 
     /// Frame of the subject at `q`.
     pub(crate) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
-        let tip = |tip: usize| robot.tip_of(tip, q);
+        self.frame_of(|tip| robot.tip_of(tip, q))
+    }
+
+    /// Frame of the subject, with each tip at the frame that `tip` returns.
+    pub(crate) fn frame_of(&self, tip: impl Fn(usize) -> Frame) -> Frame {
         let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
         match self.subject {
             Subject::Tip(of) => at_tool(tip(of)),

@@ -2,8 +2,9 @@
 
 use std::sync::OnceLock;
 
+use ikcore::constraint::Keep;
 use ikcore::obstacle::Clearance;
-use ikcore::planning::{Kept, Plan};
+use ikcore::planning::Plan;
 use ikcore::stored::to_bytes;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
@@ -53,6 +54,8 @@ pub struct PyPlan {
     limits: Py<PyLimits>,
     /// Smallest clearance on the trajectory, computed at the first access.
     least_clearance: OnceLock<Option<Clearance>>,
+    /// Largest errors of what is kept, computed at the first access.
+    kept: OnceLock<Vec<Vec<f64>>>,
 }
 
 traversed!(PyPlan: obstacles, robot, limits);
@@ -131,12 +134,19 @@ impl PyPlan {
 
     /// What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
     /// the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
-    /// at most a hundredth of the tolerance too large.
+    /// at most a hundredth of the tolerance too large, computed at the first access.
     #[getter]
-    fn kept<'py>(&self, py: Python<'py>) -> Vec<(PyKeep, Bound<'py, PyArray1<f64>>)> {
+    fn kept<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyKeep, Bound<'py, PyArray1<f64>>)>> {
         let robot = &self.robot.get().core;
-        let pair = |Kept { keep, largest }: &Kept| (PyKeep::from_core(keep, robot), row(py, largest.clone()));
-        self.core.kept.iter().map(pair).collect()
+        let largest = match self.kept.get() {
+            Some(known) => known,
+            None => {
+                let found = long_call(py, || Ok(self.core.kept(robot)))?;
+                self.kept.get_or_init(|| found)
+            }
+        };
+        let pair = |(keep, largest): (&Keep, &Vec<f64>)| (PyKeep::from_core(keep, robot), row(py, largest.clone()));
+        Ok(self.core.keeps.iter().zip(largest).map(pair).collect())
     }
 
     /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.
@@ -213,6 +223,7 @@ impl PyPlan {
             robot: robot.clone().unbind(),
             limits,
             least_clearance: OnceLock::new(),
+            kept: OnceLock::new(),
             core,
         })
     }
