@@ -95,7 +95,8 @@ fn what_is_kept_holds_between_ticks_and_during_stops() {
     for trial in 0..12 {
         let home = robot.fk(&START).unwrap();
         let (tilt, width) = ([0.02, 0.1, 0.3][trial % 3], [0.003, 0.05][trial % 2]);
-        for (limits, dt) in all_limits(&robot).into_iter().zip([[0.001, 0.01, 0.033], [0.033, 0.001, 0.01]][trial % 2]) {
+        for (limits, dt) in all_limits(&robot).into_iter().zip([[0.001, 0.01, 0.033], [0.033, 0.001, 0.01]][trial % 2])
+        {
             let of_two = [upright(&home, tilt), corridor(&home, width, 0.15)].into_iter();
             let (keeps, judges): (Vec<Keep>, Vec<Judge>) = of_two.take(1 + trial / 4).unzip();
             let mut session = session(&robot, &START, dt, limits, keeps);

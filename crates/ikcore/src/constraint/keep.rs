@@ -6,8 +6,8 @@ use smallvec::SmallVec;
 use super::drift::Drift;
 use super::gauge::{Gauge, Seen};
 use crate::error::{Error, Result};
-use crate::math::{Columns, Frame, MAX_DOF, STACK_DOF};
 use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame, MAX_DOF, STACK_DOF};
 use crate::robot::Robot;
 use crate::task::{CheckedTask, NamedTask, Subject, Target};
 

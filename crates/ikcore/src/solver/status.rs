@@ -92,7 +92,9 @@ impl Status {
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::InCollision => "move the target or what is in the way, or lower the margin",
             Self::HeldByObstacle => "move the target or what is in the way, lower the margin, or plan a way round",
-            Self::HeldByConstraint => "move the target to where everything can be kept, or widen a tolerance of what is kept",
+            Self::HeldByConstraint => {
+                "move the target to where everything can be kept, or widen a tolerance of what is kept"
+            }
             Self::RotationGivenUp => {
                 "turn the target, give the rotation a tolerance, or take a task that leaves it free, such as Position or Pointing"
             }

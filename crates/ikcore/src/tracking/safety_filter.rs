@@ -152,7 +152,8 @@ impl SafetyFilter {
 
     /// Work so far.
     pub fn work(&self) -> FilterWork {
-        let [around, kept] = [self.around.as_ref().map(Around::intervals), self.kept.as_ref().map(|kept| kept.intervals())];
+        let [around, kept] =
+            [self.around.as_ref().map(Around::intervals), self.kept.as_ref().map(|kept| kept.intervals())];
         let intervals = around.unwrap_or(0) + kept.unwrap_or(0);
         FilterWork { intervals, exchanges: self.rows.exchanges() }
     }

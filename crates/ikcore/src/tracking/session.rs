@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
 use super::away::Way;
+use super::kept::Kept;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::kept::Kept;
 use super::safety_filter::{FilterOutcome, FilterWork, Holder, SafetyFilter};
 use super::step::Step;
 use super::step_context::StepContext;

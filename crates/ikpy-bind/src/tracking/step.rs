@@ -125,7 +125,10 @@ impl PyStep {
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, around, &self.outside, &self.joints);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift, &self.held_by))
+        pickling::restored_from::<Self>(
+            py,
+            (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift, &self.held_by),
+        )
     }
 
     /// Restores a pickled value.

@@ -305,7 +305,8 @@ pub fn track(
     let only = settings.of_only(robot.get());
     let keeps = read_keeps(robot.get(), keep)?;
     let joint_weights = joint_weights.map(|weights| joint_numbers(&arm, "joint_weights", weights)).transpose()?;
-    let read = TrackArguments { rule, only, goals, joint_weights, surroundings, keeps, recover, seed, limit_at, start_slack };
+    let read =
+        TrackArguments { rule, only, goals, joint_weights, surroundings, keeps, recover, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };

@@ -140,8 +140,18 @@ impl PyTracker {
         let only = settings.of_only(robot.get());
         let keeps = read_keeps(robot.get(), keep)?;
         let joint_weights = joint_weights.map(|weights| joint_numbers(arm, "joint_weights", weights)).transpose()?;
-        let asked =
-            TrackArguments { rule, only, goals, joint_weights, surroundings, keeps, recover, seed, limit_at, start_slack };
+        let asked = TrackArguments {
+            rule,
+            only,
+            goals,
+            joint_weights,
+            surroundings,
+            keeps,
+            recover,
+            seed,
+            limit_at,
+            start_slack,
+        };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
