@@ -120,6 +120,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "trajectory",
             "objective",
             "limits",
+            "constraint",
             "obstacle",
             "task",
             "solver",

@@ -23,4 +23,4 @@ pub use keep::Keep;
 pub(crate) use keep::{KeepRow, refuse_broken};
 pub(crate) use keep_sweep::KeepScratch;
 pub use keep_sweep::{Broken, KeepSweep};
-pub(crate) use onto::Onto;
+pub(crate) use onto::{KeepTasks, Onto};

@@ -149,6 +149,8 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
+    /// What holds at every instant of the motion.
+    pub keeps: Vec<Keep>,
     /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.
