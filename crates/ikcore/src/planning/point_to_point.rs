@@ -166,7 +166,6 @@ fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&
         _ if options.has_pieces() => refused("approach, retreat and free_start are kept".into(), "has no such pieces"),
         _ if !options.keeps.is_empty() => refused("keep is held".into(), "checks nothing on the way"),
         _ if options.task.is_some() => refused("task is kept".into(), "reaches whole targets"),
-        _ if !options.keeps.is_empty() => refused("something holds on the way".into(), "keeps nothing on its way"),
         [end] => Ok(end),
         _ => refused("several ends are taken".into(), "plans to one"),
     }

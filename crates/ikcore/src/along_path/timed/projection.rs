@@ -54,6 +54,11 @@ pub(crate) struct PathKeeps<'a> {
 }
 
 impl PathKeeps<'_> {
+    /// The error that is beyond its tolerance at `q`, in words; `None` where everything holds.
+    pub(crate) fn broken_at(&self, q: &[f64]) -> Option<String> {
+        self.keeps.iter().find_map(|keep| keep.broken_at(self.robot, q))
+    }
+
     /// Whether everything holds at `q`.
     pub(crate) fn hold(&self, q: &[f64]) -> bool {
         self.keeps.iter().all(|keep| keep.holds(self.robot, q))
