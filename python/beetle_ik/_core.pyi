@@ -1599,6 +1599,7 @@ def solve(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -1632,6 +1633,11 @@ def solve(
             search
             ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
+        joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
+            (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+            it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
+            its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
+            1e8. It needs a start, and takes no goals. None: all joints cost the same.
         limits: position limits; None: the robot's.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
@@ -2186,6 +2192,7 @@ def solve_batch(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -2215,7 +2222,7 @@ def solve_batch(
             Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
-        goals, prefer: as for `solve`.
+        goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
         limits: position limits; None: the robot's.
         obstacles, margin, self_collision: as for `solve`.
         stop: budgets of each target; None: as for `solve`.
@@ -2587,6 +2594,7 @@ def track(
     solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     goals: _Goals = None,
+    joint_weights: ArrayLike | None = None,
     position_tolerance: _Tolerance = 1e-6,
     rotation_tolerance: _Tolerance = 1e-6,
     obstacles: Iterable[Obstacle] | None = None,
@@ -2621,6 +2629,9 @@ def track(
             `Limits(velocity=np.inf)` says that jumps are meant.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
+        joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
+            that a base of weight 100 stays where the arm can do it, and still moves where only it can. Only ratios count, up to
+            1e8. They need the model-based rule. None: all joints cost the same.
         position_tolerance: error band of positions (m); for several tips also a dict.
         rotation_tolerance: error band of orientations (rad); for several tips also a dict.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
@@ -2819,7 +2830,7 @@ class Tracker:
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
             sample them.
-        goals: as in `track`.
+        goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
         obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
@@ -2854,6 +2865,7 @@ class Tracker:
         solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         goals: _Goals = None,
+        joint_weights: ArrayLike | None = None,
         position_tolerance: _Tolerance = 1e-6,
         rotation_tolerance: _Tolerance = 1e-6,
         obstacles: Iterable[Obstacle | Moving] | None = None,

@@ -60,6 +60,10 @@ Trusted = Annotated[
     ),
 ]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
+JointWeights = Annotated[
+    str | None,
+    typer.Option(help="Cost of moving each joint: w1,w2,...; heavy joints move where the others cannot do it."),
+]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Velocity = Annotated[
     str | None,

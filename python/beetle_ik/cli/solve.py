@@ -11,6 +11,7 @@ from .options import (
     AsJson,
     BaseLink,
     First,
+    JointWeights,
     LinkRadius,
     Margin,
     RobotName,
@@ -42,6 +43,7 @@ def solve(
     ] = None,
     first: First = None,
     start: Start = None,
+    joint_weights: JointWeights = None,
     solver: Annotated[
         SolverName | None, typer.Option(help="Default: the closed form, else Levenberg-Marquardt from many starts.")
     ] = None,
@@ -77,9 +79,13 @@ def solve(
     if first is not None:
         options["task"] = tasks.Pose(first=first.value)
     if every:
+        if joint_weights is not None:
+            raise InvalidInputError("--joint-weights choose one solution: leave out --all")
         found = solve_all(arm, wanted, **options)
         _show_all(arm, found, as_json)
         raise typer.Exit(0 if found.success else 1)
+    if joint_weights is not None:
+        options["joint_weights"] = numbers("--joint-weights", joint_weights)
     solution = solve_target(arm, wanted, **options)
     _show(arm, solution, as_json)
     given_up = solution.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)

@@ -12,6 +12,7 @@ _OPTIONS = {
     "tilt must be": "--tilt must be",
     "the length of axis": "the length of --up",
     "margin=": "--margin",
+    "joint_weights": "--joint-weights",
     "obstacles= (a list, which may be empty) or self_collision=True": "--scene",
     "scene.attach_to(robot)": "a robot that carries it (Scene.attach_to in Python)",
     **{f"{kind}.without_robot(robot, q)": f"{kind}.without_robot in Python" for kind in ("PointCloud", "Grid")},

@@ -10,6 +10,8 @@ from . import (
     command_line,
     dead_ends,
     described,
+    held_arms,
+    joint_weights,
     kept,
     kinematics,
     motion,
@@ -27,8 +29,28 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, kept),
-    *(clearance, own_points, readers, xacro_files, described, calibration, calls, command_line, units),
+    kinematics,
+    solving,
+    round_poses,
+    searching,
+    several,
+    tracking,
+    starts,
+    streams,
+    dead_ends,
+    held_arms,
+    motion,
+    kept,
+    joint_weights,
+    clearance,
+    own_points,
+    readers,
+    xacro_files,
+    described,
+    calibration,
+    calls,
+    command_line,
+    units,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

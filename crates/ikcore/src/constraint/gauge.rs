@@ -1,12 +1,12 @@
 //! One error of a task: its value, and its bound between two configurations.
 //!
 //! Distances, coordinates and the chords of angles are convex functions of where a point or a unit vector is. So between two
-//! configurations they exceed the larger of their values there by no more than the [`Bend`]. Entries of a rotation vector are not
+//! configurations they exceed the larger of their values there by no more than the [`TipBend`]. Entries of a rotation vector are not
 //! convex; the bound of their second derivative is at [`turned`].
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::bend::Bend;
+use super::tip_bend::TipBend;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{norm, rotation_between};
@@ -190,7 +190,7 @@ impl Gauge {
     }
 
     /// A bound of the value on the whole motion between two configurations; infinite if nothing can be said.
-    pub fn bound(&self, ends: [&Seen; 2], bend: &Bend) -> f64 {
+    pub fn bound(&self, ends: [&Seen; 2], bend: &TipBend) -> f64 {
         let largest = |value: &dyn Fn(&Seen) -> f64| value(ends[0]).max(value(ends[1]));
         match self.kind {
             Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => largest(&|seen| self.value(seen)) + bend.point,
@@ -219,7 +219,7 @@ fn angle_of_chord(chord: f64) -> f64 {
 ///
 /// A rotation by more than half a turn is one by less about the opposite axis, with entries that are no larger: the bound counts
 /// them beyond half a turn, where they go on smoothly.
-fn turned([from, to]: [&[f64; 3]; 2], k: usize, bend: &Bend) -> f64 {
+fn turned([from, to]: [&[f64; 3]; 2], k: usize, bend: &TipBend) -> f64 {
     let angles = [norm(from), norm(to)];
     let most = angles[0].max(angles[1]) + bend.turn + bend.turn_off_line;
     if most > MOST_TURNED {

@@ -3,9 +3,9 @@
 //! Errors at both ends of an interval and the bend of the motion between them bound them inside. Where a bound is too large, the
 //! interval is halved: it then falls to a quarter.
 
-use super::bend::Bend;
 use super::gauge::Seen;
 use super::keep::Keep;
+use super::tip_bend::TipBend;
 use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
 use crate::objective::Point;
@@ -158,7 +158,7 @@ impl<'a> KeepSweep<'a> {
         motion.write_off_line(from, to, off_line);
         let is_open = |(number, keep): &(usize, &Keep)| {
             let [one, other] = [first, last].map(|sample| &sample.seen[*number]);
-            let bend = Bend::of(robot, keep.subject(), (&one.0, &first.frames), [change, off_line]);
+            let bend = TipBend::of(robot, keep.subject(), (&one.0, &first.frames), [change, off_line]);
             let bounds = keep.gauges.iter().map(|gauge| gauge.bound([&one.1, &other.1], &bend));
             !bounds.enumerate().all(|(gauge, bound)| thresholds.takes(*number, gauge, bound))
         };

@@ -7,15 +7,15 @@
 //! |---|---|
 //! | `keep` | [`Keep`]: a task and its target |
 //! | `gauge` | one error of a task: its value, and its bound between two configurations |
-//! | `bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
+//! | `tip_bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `onto` | configurations moved to where constraints hold |
 
-mod bend;
 mod gauge;
 mod keep;
 mod keep_sweep;
 mod onto;
+mod tip_bend;
 
 pub use keep::Keep;
 pub use keep_sweep::{Broken, KeepSweep};

@@ -19,6 +19,8 @@ pub struct TrackArguments<'a, 'py> {
     /// Task and tolerance of the only tip; the tasks of several tips are passed separately.
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
+    /// Weights of the joints, as read.
+    pub joint_weights: Option<Vec<f64>>,
     pub surroundings: Surroundings,
     pub recover: bool,
     pub seed: i128,
@@ -34,6 +36,7 @@ impl TrackArguments<'_, '_> {
             rule: self.rule,
             task,
             goals: read_goals(self.goals)?,
+            joint_weights: self.joint_weights,
             tolerance,
             limits,
             surroundings: self.surroundings,

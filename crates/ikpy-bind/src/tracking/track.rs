@@ -14,7 +14,7 @@ use super::record::{Columns, counts, record};
 use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
-use crate::joint_order::joint_vector;
+use crate::joint_order::{joint_numbers, joint_vector};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -213,6 +213,9 @@ impl PyTrackResult {
 ///         `Limits(velocity=np.inf)` says that jumps are meant.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
+///     joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
+///         that a base of weight 100 stays where the arm can do it, and still moves where only it can. Only ratios count, up to
+///         1e8. They need the model-based rule. None: all joints cost the same.
 ///     position_tolerance: error band of positions (m); for several tips also a dict.
 ///     rotation_tolerance: error band of orientations (rad); for several tips also a dict.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
@@ -251,11 +254,11 @@ impl PyTrackResult {
 ///     >>> track.q.shape
 ///     (501, 6)
 #[pyfunction]
-#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
+#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
                     margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, recover=true,
                     start_slack=None, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -267,6 +270,7 @@ pub fn track(
     solver: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     goals: Option<&Bound<'_, PyAny>>,
+    joint_weights: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
     #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     obstacles: Option<&Bound<'_, PyAny>>,
@@ -294,7 +298,8 @@ pub fn track(
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
-    let read = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
+    let joint_weights = joint_weights.map(|weights| joint_numbers(&arm, "joint_weights", weights)).transpose()?;
+    let read = TrackArguments { rule, only, goals, joint_weights, surroundings, recover, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };

@@ -21,7 +21,7 @@ use super::step::PyStep;
 use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target_by;
-use crate::joint_order::joint_vector;
+use crate::joint_order::{joint_numbers, joint_vector};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
@@ -47,7 +47,7 @@ use crate::units;
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
 ///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
-///     goals: as in `track`.
+///     goals, joint_weights: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
 ///     rotation_tolerance: largest rotation error (rad); for several tips also a dict.
 ///     obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
@@ -98,11 +98,11 @@ in_progress!(PyTracker, Session);
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
+    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
                         margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
                         start_slack=None, recover=true),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -112,6 +112,7 @@ impl PyTracker {
         solver: Option<&Bound<'_, PyAny>>,
         limits: Option<&PyLimits>,
         goals: Option<&Bound<'_, PyAny>>,
+        joint_weights: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
         #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
         obstacles: Option<&Bound<'_, PyAny>>,
@@ -135,7 +136,9 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
+        let joint_weights = joint_weights.map(|weights| joint_numbers(arm, "joint_weights", weights)).transpose()?;
+        let asked =
+            TrackArguments { rule, only, goals, joint_weights, surroundings, recover, seed, limit_at, start_slack };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;

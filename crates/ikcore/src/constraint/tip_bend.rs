@@ -10,7 +10,7 @@ use crate::task::Subject;
 
 /// Bounds of a joint motion from one configuration to another.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bend {
+pub(super) struct TipBend {
     /// Distance (m) of the origin from the straight line between both places.
     pub point: f64,
     /// Distance of the end of a unit vector, carried along, from the straight line between both places.
@@ -43,7 +43,7 @@ fn carriers<'a>(robot: &'a Robot, subject: &Subject) -> Carriers<'a> {
     }
 }
 
-impl Bend {
+impl TipBend {
     /// Bounds for the frame of `subject` with its origin at `origin` (m, in the base) and the moving elements at `frames`, while the
     /// joints change by `change` (rad, m) and get off the straight line by `off_line` at most.
     pub fn of(
