@@ -24,9 +24,8 @@ fn fastest(session: &Session) -> f64 {
 
 fn limits(robot: &Robot, kind: usize) -> Limits {
     let values = [(Field::Velocity, 2.0), (Field::Acceleration, 10.0), (Field::Jerk, 100.0)];
-    let add = |limits: Limits, (field, value)| {
-        limits.replace(field, vec![Profile::Constant(value); robot.dof()]).unwrap()
-    };
+    let add =
+        |limits: Limits, (field, value)| limits.replace(field, vec![Profile::Constant(value); robot.dof()]).unwrap();
     values.into_iter().take(kind + 1).fold(Limits::of(robot), add)
 }
 
@@ -51,7 +50,11 @@ fn scene(seed: u64) -> Option<(Session, Target)> {
         return None;
     }
     let pose = robot.fk(&end).unwrap();
-    let target = if rng.uniform_in(0.0, 1.0) < 0.5 { Target::from(&pose) } else { Target::Position(pose.translation.vector.into()) };
+    let target = if rng.uniform_in(0.0, 1.0) < 0.5 {
+        Target::from(&pose)
+    } else {
+        Target::Position(pose.translation.vector.into())
+    };
     let (limits, surroundings) = (Some(limits(&robot, seed as usize / 4 % 3)), surroundings(obstacles));
     let options = TrackOptions { limits, surroundings, ..TrackOptions::default() };
     Some((Session::new(&robot, &start, STEPS[seed as usize / 12 % 4], &options).unwrap(), target))
@@ -135,11 +138,8 @@ fn a_settled_arm_goes_on_when_its_obstacle_is_taken_away() {
 #[test]
 fn a_settled_arm_still_gives_way_to_an_obstacle() {
     let robot = panda();
-    let options = TrackOptions {
-        limits: Some(limits(&robot, 1)),
-        surroundings: surroundings(vec![]),
-        ..TrackOptions::default()
-    };
+    let options =
+        TrackOptions { limits: Some(limits(&robot, 1)), surroundings: surroundings(vec![]), ..TrackOptions::default() };
     let mut session = Session::new(&robot, &START, 0.01, &options).unwrap();
     let home = target(&robot, 0, 0.01, &[]);
     for _ in 0..300 {

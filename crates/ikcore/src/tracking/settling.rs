@@ -60,7 +60,11 @@ impl Settling {
     /// Begins a tick with these targets. Returns whether the arm is settled.
     pub fn begin_tick(&mut self, targets: &[Target]) -> bool {
         let is_same = self.targets.len() == targets.len()
-            && self.targets.iter().zip(targets).all(|(old, new)| old == new || old.distance_to(new) <= NEW * self.error);
+            && self
+                .targets
+                .iter()
+                .zip(targets)
+                .all(|(old, new)| old == new || old.distance_to(new) <= NEW * self.error);
         if !is_same {
             self.restart();
             self.targets.extend_from_slice(targets);
