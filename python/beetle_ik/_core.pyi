@@ -709,6 +709,7 @@ class Status(IntEnum):
     HELD_BY_OBSTACLE = 15
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
+    HELD_BY_CONSTRAINT = 18
 
 @final
 class APPS:
@@ -2600,6 +2601,7 @@ def track(
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
     self_collision: bool | None = None,
+    keep: Keep | Sequence[Keep] | None = None,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
@@ -2871,6 +2873,7 @@ class Tracker:
         obstacles: Iterable[Obstacle | Moving] | None = None,
         margin: float | None = None,
         self_collision: bool | None = None,
+        keep: Keep | Sequence[Keep] | None = None,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
@@ -2912,6 +2915,9 @@ class Tracker:
     @property
     def start_outside(self) -> list[tuple[str, float, float]]:
         """Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside."""
+    @property
+    def keep(self) -> tuple[Keep, ...]:
+        """What holds at every instant, a tuple of `Keep`."""
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
         """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If

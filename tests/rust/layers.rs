@@ -175,6 +175,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "limits",
             "motion",
             "obstacle",
+            "constraint",
             "shape",
             "manipulability",
             "task",

@@ -109,6 +109,7 @@ mod tracking {
     mod clear;
     mod ease;
     mod jump;
+    mod keep;
     mod khan_2022;
     mod model_free;
     mod resolved_rate;

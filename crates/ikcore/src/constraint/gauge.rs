@@ -2,14 +2,17 @@
 //!
 //! Distances, coordinates and the chords of angles are convex functions of where a point or a unit vector is. So between two
 //! configurations they exceed the larger of their values there by no more than the [`TipBend`]. Entries of a rotation vector are not
-//! convex; the bound of their second derivative is at [`turned`].
+//! convex; the bound of their second derivative is at [`turned`]. The same holds for all configurations between the control points of a
+//! spline, where the bend is that of a motion that reaches across all of them.
 
 use std::f64::consts::{PI, SQRT_2};
 
+use super::drift::Drift;
 use super::tip_bend::TipBend;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::so3::{norm, rotation_between};
+use crate::math::vector::dot;
 use crate::task::{Criterion, Region, Target};
 use crate::wording::number;
 
@@ -189,20 +192,51 @@ impl Gauge {
         }
     }
 
-    /// A bound of the value on the whole motion between two configurations; infinite if nothing can be said.
-    pub fn bound(&self, ends: [&Seen; 2], bend: &TipBend) -> f64 {
-        let largest = |value: &dyn Fn(&Seen) -> f64| value(ends[0]).max(value(ends[1]));
+    /// The derivative of the value, by a joint that moves the subject like this.
+    pub fn slope(&self, seen: &Seen, drift: &Drift) -> f64 {
+        let along = |vector: &[f64; 3], rate: &[f64; 3]| match norm(vector) {
+            0.0 => 0.0,
+            length => dot(vector, rate) / length,
+        };
         match self.kind {
-            Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => largest(&|seen| self.value(seen)) + bend.point,
-            Kind::Tilt => angle_of_chord(largest(&|seen| seen.axis_chord) + bend.direction),
+            Kind::Distance => along(&seen.offset, &drift.offset),
+            Kind::Coordinate(k) => seen.offset[k].signum() * drift.offset[k],
+            Kind::Turn => along(&seen.turn, &drift.spin),
+            Kind::TurnAbout(k) => seen.turn[k].signum() * drift.turn[k],
+            Kind::Tilt => drift.tilt,
+            Kind::Face { coordinate, above, .. } => drift.origin[coordinate] * if above { 1.0 } else { -1.0 },
+        }
+    }
+
+    /// A bound of the value on all configurations between these; infinite if nothing can be said.
+    pub fn bound<'s>(&self, points: impl Iterator<Item = &'s Seen> + Clone, bend: &TipBend) -> f64 {
+        match self.kind {
+            Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => {
+                highest(points.map(|seen| self.value(seen)), bend.point, bend)
+            }
+            Kind::Tilt => angle_of_chord(highest(points.map(|seen| seen.axis_chord), bend.direction, bend)),
             Kind::Turn => {
                 // The three axes together, as one vector of length sqrt(3): its chord is 2 sqrt(2) sin(angle / 2).
                 let chord = |seen: &Seen| 2.0 * SQRT_2 * (0.5 * norm(&seen.turn)).sin();
-                angle_of_chord((largest(&chord) + 3_f64.sqrt() * bend.direction) / SQRT_2)
+                angle_of_chord(highest(points.map(chord), 3_f64.sqrt() * bend.direction, bend) / SQRT_2)
             }
-            Kind::TurnAbout(k) => turned(ends.map(|seen| &seen.turn), k, bend),
+            Kind::TurnAbout(k) => turned(points.map(|seen| &seen.turn), k, bend),
         }
     }
+}
+
+/// A bound of a function between points where it has these values. It exceeds the mean of the values, weighted like the points, by
+/// `excess` at most.
+///
+/// Without motion off the line, the excess is also at most 4 `excess` times the weights of all points but one, whichever that is. So the
+/// function does not exceed the largest value where all others are lower by 4 `excess`: an error at its tolerance can be left.
+fn highest(values: impl Iterator<Item = f64>, excess: f64, bend: &TipBend) -> f64 {
+    let [mut first, mut second] = [f64::NEG_INFINITY; 2];
+    for value in values {
+        (first, second) = if value > first { (value, first) } else { (first, second.max(value)) };
+    }
+    let left = if bend.is_straight { first.max(second + 4.0 * excess) } else { f64::INFINITY };
+    left.min(first + excess)
 }
 
 /// The angle (rad) between two unit vectors with this difference.
@@ -219,16 +253,15 @@ fn angle_of_chord(chord: f64) -> f64 {
 ///
 /// A rotation by more than half a turn is one by less about the opposite axis, with entries that are no larger: the bound counts
 /// them beyond half a turn, where they go on smoothly.
-fn turned([from, to]: [&[f64; 3]; 2], k: usize, bend: &TipBend) -> f64 {
-    let angles = [norm(from), norm(to)];
-    let most = angles[0].max(angles[1]) + bend.turn + bend.turn_off_line;
+fn turned<'s>(vectors: impl Iterator<Item = &'s [f64; 3]> + Clone, k: usize, bend: &TipBend) -> f64 {
+    let most = vectors.clone().map(norm).fold(0.0, f64::max) + bend.turn + bend.turn_off_line;
     if most > MOST_TURNED {
         return f64::INFINITY;
     }
     let beyond = |angle: f64| if 2.0 * PI - angle <= most { 2.0 * PI / angle - 1.0 } else { 1.0 };
-    let ends = (from[k].abs() * beyond(angles[0])).max(to[k].abs() * beyond(angles[1]));
+    let values = vectors.map(|vector| vector[k].abs() * beyond(norm(vector)));
     let (sine, cosine) = (0.5 * most).sin_cos();
     let stretch = if most < 1e-3 { 1.0 + 0.05 * most } else { 0.5 * most / sine };
     let change = if most < 1e-3 { 0.5 + 0.5 * most } else { 0.5 - 0.5 * cosine / sine + 0.25 * most / (sine * sine) };
-    ends + stretch * ((0.5 + change) * bend.turn * bend.turn / 8.0 + bend.turn_off_line)
+    highest(values, stretch * ((0.5 + change) * bend.turn * bend.turn / 8.0 + bend.turn_off_line), bend)
 }

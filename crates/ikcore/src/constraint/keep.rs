@@ -1,11 +1,13 @@
 //! What holds at every instant of a motion: the error of a task to its target stays within the task's tolerance.
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
+use super::drift::Drift;
 use super::gauge::{Gauge, Seen};
 use crate::error::{Error, Result};
-use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame, MAX_DOF, STACK_DOF};
 use crate::robot::Robot;
 use crate::task::{CheckedTask, NamedTask, Subject, Target};
 
@@ -20,6 +22,17 @@ pub struct Keep {
     pub(super) gauges: Vec<Gauge>,
     /// Number of entries of the task.
     entries: usize,
+}
+
+/// An error, linearised at a configuration.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct KeepRow {
+    /// What is left of its tolerance (rad, m); negative beyond it.
+    pub left: f64,
+    /// Width of the band in which it is kept (rad, m): its tolerance.
+    pub room: f64,
+    /// Derivative of the error by the joints.
+    pub slope: [f64; MAX_DOF],
 }
 
 /// A task and its target, as the caller gives them.
@@ -129,6 +142,17 @@ impl Keep {
             .map(|gauge| gauge.in_words(gauge.value(&seen)))
     }
 
+    /// The error at `q` (n,) of whose tolerance the least is left, in words, and what is left: a fraction, of a region the distance (m).
+    pub(crate) fn tightest_at(&self, robot: &Robot, q: &[f64]) -> Option<(f64, String)> {
+        let seen = self.seen(&self.frame(robot, q));
+        let left = |gauge: &&Gauge| {
+            let left = gauge.tolerance - gauge.value(&seen);
+            if gauge.is_of_task() { left / gauge.tolerance.max(f64::MIN_POSITIVE) } else { left }
+        };
+        let tightest = self.gauges.iter().min_by(|one, other| left(one).total_cmp(&left(other)))?;
+        Some((left(&tightest), tightest.in_words(tightest.value(&seen))))
+    }
+
     /// The error that is farthest beyond its tolerance at `q` (n,), or nearest to it, its value there and its tolerance, and the unit.
     pub(crate) fn worst_at(&self, robot: &Robot, q: &[f64]) -> (String, [f64; 2], &'static str) {
         let seen = self.seen(&self.frame(robot, q));
@@ -136,6 +160,20 @@ impl Keep {
         let worst = self.gauges.iter().max_by(|one, other| excess(one).total_cmp(&excess(other)));
         worst
             .map_or_else(Default::default, |gauge| (gauge.named(), [gauge.value(&seen), gauge.tolerance], gauge.unit()))
+    }
+
+    /// Calls `take` with each of its errors at `q` (n,), linearised there. `columns` is scratch.
+    pub(crate) fn each_row(&self, robot: &Robot, q: &[f64], columns: &mut Columns, mut take: impl FnMut(KeepRow)) {
+        let frame = self.task.frame_and_jacobian(robot, q, columns);
+        let seen = self.seen(&frame);
+        let mut drifts: SmallVec<[Drift; STACK_DOF]> = SmallVec::new();
+        drifts.extend(columns[..q.len()].iter().map(|column| Drift::of(&self.target, &frame, column)));
+        for gauge in &self.gauges {
+            let mut slope = [0.0; MAX_DOF];
+            slope.iter_mut().zip(&drifts).for_each(|(slope, drift)| *slope = gauge.slope(&seen, drift));
+            let room = if gauge.is_of_task() { gauge.tolerance } else { f64::INFINITY };
+            take(KeepRow { left: gauge.tolerance - gauge.value(&seen), room, slope });
+        }
     }
 
     /// Errors, none larger than its tolerance: they are known to be within.
@@ -184,6 +222,20 @@ impl Keep {
     /// The subject at `frame`, as the target sees it.
     pub(super) fn seen(&self, frame: &Frame) -> Seen {
         Seen::from(&self.target, frame)
+    }
+}
+
+/// Checks that all constraints hold at a configuration; `what` names it in the error.
+///
+/// # Errors
+/// [`Error::Contradiction`] with the error and its tolerance.
+pub(crate) fn refuse_broken(what: &str, keeps: &[Keep], robot: &Robot, q: &[f64]) -> Result<()> {
+    match keeps.iter().find_map(|keep| keep.broken_at(robot, q)) {
+        None => Ok(()),
+        Some(broken) => {
+            let problem = format!("{what}: what is to be kept on the way does not hold there: {broken}");
+            Err(Error::Contradiction { problem: problem.into() })
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Certificate that constraints hold at every instant of a motion, and its largest errors.
 //!
 //! Errors at both ends of an interval and the bend of the motion between them bound them inside. Where a bound is too large, the
-//! interval is halved: it then falls to a quarter.
+//! interval is halved: it then falls to a quarter. A spline stays between its control points, those just outside of the interval included.
 
 use super::gauge::Seen;
 use super::keep::Keep;
@@ -37,12 +37,20 @@ pub struct Broken {
 pub struct KeepSweep<'a> {
     robot: &'a Robot,
     keeps: &'a [Keep],
-    /// Samples by depth; both ends of the motion first.
-    samples: Vec<Sample>,
-    change: Point,
-    off_line: Point,
+    scratch: KeepScratch,
     intervals: usize,
     most: usize,
+}
+
+/// Scratch of a sweep, for those that do not own the robot.
+#[derive(Debug, Default)]
+pub(crate) struct KeepScratch {
+    /// Samples by depth; both ends of the motion first.
+    samples: Vec<Sample>,
+    /// Control points of a spline just outside of an interval.
+    outside: Vec<Sample>,
+    change: Point,
+    off_line: Point,
 }
 
 #[derive(Debug, Clone)]
@@ -64,8 +72,18 @@ trait Thresholds {
 impl<'a> KeepSweep<'a> {
     /// A checker for any number of motions of `robot`.
     pub fn new(robot: &'a Robot, keeps: &'a [Keep]) -> Self {
-        let [change, off_line] = [(); 2].map(|()| Point::from_elem(0.0, robot.dof()));
-        Self { robot, keeps, samples: vec![], change, off_line, intervals: 0, most: 0 }
+        Self::with_scratch(robot, keeps, KeepScratch::default())
+    }
+
+    /// A checker with the scratch of an earlier one of the same robot and constraints.
+    pub(crate) fn with_scratch(robot: &'a Robot, keeps: &'a [Keep], mut scratch: KeepScratch) -> Self {
+        [&mut scratch.change, &mut scratch.off_line].into_iter().for_each(|joints| joints.resize(robot.dof(), 0.0));
+        Self { robot, keeps, scratch, intervals: 0, most: 0 }
+    }
+
+    /// The scratch, for the next one.
+    pub(crate) fn into_scratch(self) -> KeepScratch {
+        self.scratch
     }
 
     /// Number of intervals examined so far.
@@ -94,6 +112,11 @@ impl<'a> KeepSweep<'a> {
             let broken = self.keeps[keep].broken_at(self.robot, &q);
             Broken { at, keep, what: broken.unwrap_or_else(|| "an error too near to its tolerance to tell".into()) }
         })
+    }
+
+    /// Whether all constraints are certified to hold on the motion over \[`from`, `to`\], in at most `most` intervals.
+    pub(crate) fn holds_within(&mut self, motion: &impl JointMotion, ends: [f64; 2], most: usize) -> bool {
+        self.walk(motion, ends, most, &mut Tolerances(self.keeps)).is_ok()
     }
 
     /// Bounds of the largest error of each entry of each constraint on the motion over \[`from`, `to`\], at most a hundredth of the tolerance
@@ -151,15 +174,26 @@ impl<'a> KeepSweep<'a> {
         ends: [usize; 2],
         thresholds: &mut impl Thresholds,
     ) -> Option<usize> {
-        let Self { robot, keeps, samples, change, off_line, .. } = self;
+        let Self { robot, keeps, scratch: KeepScratch { samples, outside, change, off_line }, .. } = self;
         let [first, last] = ends.map(|end| &samples[end]);
         change.iter_mut().zip(first.q.iter().zip(&last.q)).for_each(|(change, (a, b))| *change = (b - a).abs());
         off_line.fill(0.0);
         motion.write_off_line(from, to, off_line);
+        let mut beside = &outside[..0];
+        if motion.is_spline() {
+            write_sample(outside, 0, (robot, keeps), (motion, from - 1.0));
+            write_sample(outside, 1, (robot, keeps), (motion, to + 1.0));
+            for (control_point, end) in outside.iter().zip([first, last]) {
+                let joints = change.iter_mut().zip(control_point.q.iter().zip(&end.q));
+                joints.for_each(|(change, (a, b))| *change += (b - a).abs());
+            }
+            beside = outside;
+        }
         let is_open = |(number, keep): &(usize, &Keep)| {
-            let [one, other] = [first, last].map(|sample| &sample.seen[*number]);
-            let bend = TipBend::of(robot, keep.subject(), (&one.0, &first.frames), [change, off_line]);
-            let bounds = keep.gauges.iter().map(|gauge| gauge.bound([&one.1, &other.1], &bend));
+            let (origin, frames) = (&first.seen[*number].0, &first.frames);
+            let bend = TipBend::of(robot, keep.subject(), (origin, frames), [change, off_line]);
+            let points = [first, last].into_iter().chain(beside).map(|sample| &sample.seen[*number].1);
+            let bounds = keep.gauges.iter().map(|gauge| gauge.bound(points.clone(), &bend));
             !bounds.enumerate().all(|(gauge, bound)| thresholds.takes(*number, gauge, bound))
         };
         keeps.iter().enumerate().find(is_open).map(|(number, _)| number)
@@ -173,24 +207,36 @@ impl<'a> KeepSweep<'a> {
         at: f64,
         thresholds: &mut impl Thresholds,
     ) -> Result<(), (f64, usize)> {
-        let Self { robot, keeps, samples, .. } = self;
-        if samples.len() == slot {
-            let nowhere = keeps.iter().map(|keep| ([0.0; 3], keep.seen(&Frame::IDENTITY))).collect();
-            let q = Point::from_elem(0.0, robot.dof());
-            samples.push(Sample { q, frames: robot.frame_buffer(), seen: nowhere });
-        }
-        let Sample { q, frames, seen } = &mut samples[slot];
-        motion.write(at, q);
-        robot.write_frames(q, frames);
-        for (number, (keep, seen)) in keeps.iter().zip(seen).enumerate() {
-            let (frame, origin) = keep.place(robot, frames);
-            *seen = (origin, keep.seen(&frame));
+        let Self { robot, keeps, scratch, .. } = self;
+        write_sample(&mut scratch.samples, slot, (robot, keeps), (motion, at));
+        for (number, (keep, seen)) in keeps.iter().zip(&scratch.samples[slot].seen).enumerate() {
             let mut values = keep.gauges.iter().map(|gauge| gauge.value(&seen.1));
             if !thresholds.sampled(number, &mut values) {
                 return Err((at, number));
             }
         }
         Ok(())
+    }
+}
+
+/// Writes what the constraints see at a place of the motion into a slot.
+fn write_sample(
+    samples: &mut Vec<Sample>,
+    slot: usize,
+    (robot, keeps): (&Robot, &[Keep]),
+    (motion, at): (&impl JointMotion, f64),
+) {
+    if samples.len() == slot {
+        let nowhere = keeps.iter().map(|keep| ([0.0; 3], keep.seen(&Frame::IDENTITY))).collect();
+        let q = Point::from_elem(0.0, robot.dof());
+        samples.push(Sample { q, frames: robot.frame_buffer(), seen: nowhere });
+    }
+    let Sample { q, frames, seen } = &mut samples[slot];
+    motion.write(at, q);
+    robot.write_frames(q, frames);
+    for (keep, seen) in keeps.iter().zip(seen) {
+        let (frame, origin) = keep.place(robot, frames);
+        *seen = (origin, keep.seen(&frame));
     }
 }
 

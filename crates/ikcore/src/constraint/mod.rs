@@ -7,10 +7,12 @@
 //! |---|---|
 //! | `keep` | [`Keep`]: a task and its target |
 //! | `gauge` | one error of a task: its value, and its bound between two configurations |
+//! | `drift` | how a joint changes the errors: their slopes |
 //! | `tip_bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `onto` | configurations moved to where constraints hold |
 
+mod drift;
 mod gauge;
 mod keep;
 mod keep_sweep;
@@ -18,5 +20,7 @@ mod onto;
 mod tip_bend;
 
 pub use keep::Keep;
+pub(crate) use keep::{KeepRow, refuse_broken};
+pub(crate) use keep_sweep::KeepScratch;
 pub use keep_sweep::{Broken, KeepSweep};
 pub(crate) use onto::Onto;

@@ -19,6 +19,8 @@ pub(super) struct TipBend {
     pub turn: f64,
     /// ... and off it.
     pub turn_off_line: f64,
+    /// Whether all joints stay on that line.
+    pub is_straight: bool,
 }
 
 /// Moving elements between the frame that a subject is seen from and its own, the outermost first: the number of the frame that each
@@ -59,6 +61,7 @@ impl TipBend {
         // that |v''| <= turn^2 for directions that turn about one axis alone, and no more in general: see `sagitta_along`.
         let direction = turn * turn / 8.0 + turn_off_line;
         let point = sagitta_along(carriers.iter().copied(), frames, origin, [change, off_line]);
-        Self { point, direction, turn, turn_off_line }
+        let is_straight = off_line.iter().all(|off| *off == 0.0);
+        Self { point, direction, turn, turn_off_line, is_straight }
     }
 }

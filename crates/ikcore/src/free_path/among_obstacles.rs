@@ -7,6 +7,7 @@ use super::pair_search::PairSearch;
 use super::path_search::{Certified, PathSearch};
 use super::rrt_connect::TreeSearch;
 use super::straight_line_plan::{PAIRS, no_pair, straight};
+use crate::constraint::refuse_broken;
 use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
 use crate::math::vector::{point_between, squared_distance};
@@ -14,7 +15,7 @@ use crate::objective::Point;
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep, Scene};
 use crate::plan::{
     Cost, END_RESERVE, EndName, Endpoint, Plan, PointToPointOptions, configuration_at, least_clearance, no_usable_end,
-    refuse_broken, refuse_collision, too_near,
+    refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
 

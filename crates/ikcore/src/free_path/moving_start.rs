@@ -3,15 +3,13 @@
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
-use crate::constraint::KeepSweep;
+use crate::constraint::{KeepSweep, refuse_broken};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Limits, ROUNDING, StartSlack};
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state_from, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
-use crate::plan::{
-    EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance, refuse_broken,
-};
+use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;

@@ -4,7 +4,6 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::planar_arm::PlanarArm;
-use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::math::polynomial::evaluate;
 use crate::message::{Message, message};
@@ -59,20 +58,6 @@ pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) ->
             Err(Error::InCollision { what: what.into(), link: contact.link, other, depth, remedy })
         }
         _ => Ok(()),
-    }
-}
-
-/// Checks that all constraints hold at a configuration; `what` names it in the error.
-///
-/// # Errors
-/// [`Error::Contradiction`] with the error and its tolerance.
-pub(crate) fn refuse_broken(what: &str, keeps: &[Keep], robot: &Robot, q: &[f64]) -> Result<()> {
-    match keeps.iter().find_map(|keep| keep.broken_at(robot, q)) {
-        None => Ok(()),
-        Some(broken) => {
-            let problem = format!("{what}: what is to be kept on the way does not hold there: {broken}");
-            Err(Error::Contradiction { problem: problem.into() })
-        }
     }
 }
 

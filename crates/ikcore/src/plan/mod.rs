@@ -32,8 +32,7 @@ mod straight_line;
 mod tpbso_options;
 
 pub(crate) use collision_checks::{
-    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_broken,
-    refuse_collision, too_near,
+    END_RESERVE, TimedMotion, certify, configuration_at, least_clearance, motion_space, refuse_collision, too_near,
 };
 pub use cost::Cost;
 pub(crate) use cost::tip_travel_along;

@@ -118,7 +118,7 @@ impl CheckedTask {
     }
 
     /// Frame of the subject at `q`, and its geometric Jacobian.
-    pub(super) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
+    pub(crate) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
         let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
         let mut frame = robot.tip_and_jacobian_of(of, q, columns);
         if let Some(tool) = &self.tool {

@@ -40,6 +40,7 @@ mod constrained_step;
 mod controller;
 mod coupled_stop;
 mod current_tasks;
+mod kept;
 mod late_sensor;
 mod limited_state;
 mod model_free;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::rule::TickRule;
 use super::target_filter::TargetFilter;
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::ik::joint_weights;
 use crate::limits::{LimitAt, Limits, StartSlack};
@@ -47,6 +48,8 @@ pub struct TrackOptions {
     pub ease: bool,
     /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
+    /// What is kept at every instant, between ticks too, and by the stop after each; nothing by default.
+    pub keeps: Vec<Keep>,
     /// Whether an arm that comes no nearer to its target, though a configuration on it is known, goes there by a motion of its
     /// joints; true by default. It is for the library's own rule, and tasks without a region.
     pub recover: bool,
@@ -68,6 +71,7 @@ impl Default for TrackOptions {
             timeout: None,
             ease: false,
             surroundings: Surroundings::default(),
+            keeps: vec![],
             recover: true,
             start_slack: StartSlack::default(),
             seed: 0,

@@ -1,5 +1,6 @@
 //! Reading of the arguments that `track` and `Tracker` share.
 
+use ikcore::constraint::Keep;
 use ikcore::limits::{LimitAt, Limits};
 use ikcore::obstacle::Surroundings;
 use ikcore::task::{Task, Tolerance};
@@ -22,6 +23,7 @@ pub struct TrackArguments<'a, 'py> {
     /// Weights of the joints, as read.
     pub joint_weights: Option<Vec<f64>>,
     pub surroundings: Surroundings,
+    pub keeps: Vec<Keep>,
     pub recover: bool,
     pub seed: i128,
     pub limit_at: &'a str,
@@ -40,6 +42,7 @@ impl TrackArguments<'_, '_> {
             tolerance,
             limits,
             surroundings: self.surroundings,
+            keeps: self.keeps,
             ease: false,
             start_slack: read_slack(self.start_slack)?,
             recover: self.recover,

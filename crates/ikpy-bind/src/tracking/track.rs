@@ -15,6 +15,7 @@ use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
 use crate::joint_order::{joint_numbers, joint_vector};
+use crate::keep::read_keeps;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -224,6 +225,8 @@ impl PyTrackResult {
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
 ///         several tips all of whose collision shapes are known.
+///     keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+///         each. The arm goes as near to the path as that allows. None: nothing.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
@@ -240,9 +243,10 @@ impl PyTrackResult {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
+///     InvalidInputError: a start at which something in keep does not hold.
 ///     LimitError: a start farther outside its limits than start_slack, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
-///         region; position, acceleration or jerk limits that vary in time, among obstacles.
+///         region; position, acceleration or jerk limits that vary in time, among obstacles or with keep.
 ///
 /// For example:
 ///
@@ -256,9 +260,9 @@ impl PyTrackResult {
 #[pyfunction]
 #[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, recover=true,
+                    margin=None, self_collision=None, keep=None, seed=0, limit_at="interval", ease=false, recover=true,
                     start_slack=None, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -276,6 +280,7 @@ pub fn track(
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
     self_collision: Option<bool>,
+    keep: Option<&Bound<'_, PyAny>>,
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ease: bool,
@@ -298,8 +303,10 @@ pub fn track(
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
+    let keeps = read_keeps(robot.get(), keep)?;
     let joint_weights = joint_weights.map(|weights| joint_numbers(&arm, "joint_weights", weights)).transpose()?;
-    let read = TrackArguments { rule, only, goals, joint_weights, surroundings, recover, seed, limit_at, start_slack };
+    let read =
+        TrackArguments { rule, only, goals, joint_weights, surroundings, keeps, recover, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };
