@@ -4,8 +4,8 @@ A cup that stays upright
 
 The hand holds a cup, so its axis must point down all the way, within ten degrees.
 ``keep=`` takes what holds at every instant of a motion, here ``upright``. Both
-plans go past a wall; only one spills. What is kept is certified between samples too, and
-``plan.kept`` has bounds of the largest errors.
+plans go past a wall; only one spills. What is kept is certified between samples
+too, and ``plan.kept`` has bounds of the largest errors.
 """
 
 import matplotlib.pyplot as plt

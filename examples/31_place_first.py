@@ -1,6 +1,6 @@
 """
 The place exactly, the orientation as near as it can be
-========================================================
+=======================================================
 
 An arm with five joints cannot turn its hand freely. Asked for a whole pose, it puts
 the hand at the place exactly, and comes as near to the orientation as the place

@@ -3370,14 +3370,31 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 @final
 class Keep:
+    """What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
+
+    Args:
+        target: pose (4, 4) or position (3,) (m); or a dict from tips to targets, as for `solve`: the key ("left", "right") is the pose
+            of the second tip in the frame of the first.
+        task: part of the target that counts, one of `tasks`, with its tolerance: components without one are within 1e-6 m or rad, those
+            with an infinite one, or of weight 0, are free. None: all of the target, within 1e-6.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep.
+
+    For example, a hand that stays within 1 cm of the plane z = 0.3 m:
+
+        >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[np.inf, np.inf, 0.01]))
+    """
+
     def __new__(cls, target: _Targets, task: Task | None = None) -> Keep: ...
     @property
-    def target(self) -> Any: ...
+    def target(self) -> Any:
+        """The target: a pose (4, 4), a position (3,) (m), or a dict of them by tip."""
     @property
-    def task(self) -> Task | None: ...
+    def task(self) -> Task | None:
+        """The part of the target that counts; None: all of it."""
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
-    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 def upright(
     robot: Robot,
@@ -3386,7 +3403,28 @@ def upright(
     direction: ArrayLike = (0, 0, -1),
     tilt: float = 0.1,
     tip: str | None = None,
-) -> Keep: ...
+) -> Keep:
+    """Keeps an axis of the tip within an angle of a direction all the way, such as a cup that must not spill.
+
+    Args:
+        robot: the arm.
+        axis: (3,), axis of the tip, in its own frame, of any length but zero.
+        direction: (3,), where the axis points, in the frame of the base; by default down, as for a hand that hangs.
+        tilt: largest angle between them (rad).
+        tip: name of the tip of a robot with several; None: its only one.
+
+    Returns:
+        A `Keep`, for `keep=` of `plan_point_to_point` and others.
+
+    Raises:
+        InvalidInputError: an axis or a direction of length zero; a tilt that is not positive, or beyond pi; no tip of several.
+        UnknownNameError: a tip that the robot does not have.
+
+    For example:
+
+        >>> arm = bik.Robot.named("panda")
+        >>> keep = bik.upright(arm, tilt=np.radians(15))
+    """
 def plan_point_to_point(
     robot: Robot,
     start: _Pose | None = None,
@@ -3432,6 +3470,8 @@ def plan_point_to_point(
         free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
             bodies come nearer than at the start; see `Plan.freed`.
         task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
+        keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+            not sampled; `Plan.kept` has the largest errors.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -3448,7 +3488,7 @@ def plan_point_to_point(
 
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
-            only if none can be reached.
+            only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
         LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
             joint and the remedy).
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
@@ -3676,7 +3716,7 @@ def plan_batch(
             others. The arguments of a problem override the common ones.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         progress: True shows a progress bar; a callable is called with (done, total).
-        approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+        approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
             `plan_point_to_point`, for all problems.
 
     Returns:
@@ -3840,7 +3880,11 @@ class Plan:
         given) (rad).
         """
     @property
-    def kept(self) -> list[tuple[Keep, _Array]]: ...
+    def kept(self) -> list[tuple[Keep, _Array]]:
+        """What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+        the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
+        at most a hundredth of the tolerance too large, computed at the first access.
+        """
     @property
     def freed(self) -> tuple[float, float] | None:
         """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and
@@ -3870,7 +3914,8 @@ class Plan:
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
     def retime(self, limits: Limits) -> Plan:
-        """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+        """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
+        the plan keeps on the way, which is certified again.
 
         A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
         a whole and passes exactly the same configurations.
@@ -3881,7 +3926,7 @@ class Plan:
         Raises:
             TypeError: limits that are no `Limits`.
             InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
-                acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
+                acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
 

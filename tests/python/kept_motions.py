@@ -176,8 +176,7 @@ def _turning(axis: Array, direction: Array) -> Array:
 
 def holds(keep: bik.Keep, poses: Array, slack: float = 1e-9) -> Array:
     """Whether a constraint holds at poses (m,)."""
-    found = errors(keep, poses)
-    return (np.nan_to_num(found - allowed(keep), nan=-1.0) <= slack).all(axis=1)
+    return (errors(keep, poses) <= np.minimum(allowed(keep), 1e9) + slack).all(axis=1)
 
 
 def end_of(arm: Arm, keeps: list[bik.Keep], start: Array, random: np.random.Generator) -> Array | None:
@@ -190,12 +189,13 @@ def end_of(arm: Arm, keeps: list[bik.Keep], start: Array, random: np.random.Gene
         pose = arm.poses(q[None])
         rows = []
         for keep in keeps:
-            found, most = errors(keep, pose)[0], allowed(keep)
-            rows.append(np.where(np.isinf(most), 0.0, np.maximum(found - 0.7 * most, 0.0)))
+            most = allowed(keep)
+            limited = np.isfinite(most)
+            rows.append(np.maximum(errors(keep, pose)[0][limited] - 0.7 * most[limited], 0.0))
             if keep.task is not None and keep.task.region is not None:
-                place = pose[0, :3, 3]
-                rows[-1] = np.zeros(len(most))
-                rows.append(np.maximum(keep.task.region[0] - place, 0.0) + np.maximum(place - keep.task.region[1], 0.0))
+                place, inset = pose[0, :3, 3], 0.1 * (keep.task.region[1] - keep.task.region[0])
+                below, above = keep.task.region[0] + inset - place, place - keep.task.region[1] + inset
+                rows = [np.maximum(below, 0.0) + np.maximum(above, 0.0), *rows[:-1]]
         return np.concatenate(rows)
 
     for reach in (1.5, 1.5, 0.8, 0.8, 0.4, 0.2, 0.1):

@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
+use ikcore::Error;
 use ikcore::constraint::Keep;
 use ikcore::math::Frame;
 use ikcore::math::pose::{rows, turning};
 use ikcore::message::Setting;
 use ikcore::robot::Robot;
+use ikcore::stored::{from_bytes, to_bytes};
 use ikcore::task::{NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -15,7 +17,8 @@ use crate::convert::{point, pose_array, row, summary};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::ik::read_target;
-use crate::options::{NewArguments, list_text};
+use crate::options::list_text;
+use crate::pickling::{Reduced, bytes, restored_from};
 use crate::robot::PyRobot;
 use crate::task::{read_task, task_object};
 use crate::tip_keys::{TipKey, in_words, key_object, read_key, subject, tips_in_words};
@@ -62,12 +65,7 @@ impl PyKeep {
                 each.collect::<PyResult<Vec<_>>>()?
             }
         };
-        let keep = Self { targets, task: read_task(task)? };
-        for (_, target) in &keep.targets {
-            // Finds wrong tasks and targets where they are given.
-            Keep::new(&keep.named(Subject::Tip(0)), target).map_err(raise)?;
-        }
-        Ok(keep)
+        Self { targets, task: read_task(task)? }.checked()
     }
 
     /// The target: a pose (4, 4), a position (3,) (m), or a dict of them by tip.
@@ -106,14 +104,27 @@ impl PyKeep {
         content_hash(self)
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
-        let arguments = PyDict::new(py);
-        arguments.set_item("task", self.task(py)?)?;
-        Ok((PyTuple::new(py, [self.target(py)?])?, arguments))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        restored_from::<Self>(py, (bytes(py, to_bytes("keep", &(&self.targets, &self.task)))?,))
+    }
+
+    /// Restores a pickled value.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        let (targets, task) = from_bytes("keep", bytes).map_err(raise)?;
+        Self { targets, task }.checked()
     }
 }
 
 impl PyKeep {
+    /// Finds wrong tasks and targets where they are given.
+    fn checked(self) -> PyResult<Self> {
+        for (_, target) in &self.targets {
+            Keep::new(&self.named(Subject::Tip(0)), target).map_err(raise)?;
+        }
+        Ok(self)
+    }
+
     fn named(&self, subject: Subject) -> NamedTask {
         NamedTask { subject, task: self.task, tolerance: Tolerance::default() }
     }
@@ -180,6 +191,9 @@ pub fn upright(
 ) -> PyResult<PyKeep> {
     let vector = |what: &str, given: Option<&Bound<'_, PyAny>>, default: [f64; 3]| {
         let vector = given.map_or(Ok(default), |given| point(what, given))?;
+        if let Some(i) = vector.iter().position(|entry| !entry.is_finite()) {
+            return Err(raise(Error::NotFinite { what: what.into(), place: format!("entry {i}"), value: vector[i] }));
+        }
         match vector.iter().any(|entry| *entry != 0.0) {
             true => Ok(vector),
             false => Err(invalid(format!("the length of {what} must be positive, got 0.0"))),

@@ -102,6 +102,8 @@ class KeptMotions(Attack):
         plan = left["plan"]
         if len(left["told"]) != len(case["keeps"]):
             raise BrokenError("a constraint is missing", left["told"])
+        if plan.success != (not plan.violations):
+            raise BrokenError("success and violations contradict each other", plan.violations)
         if not plan.success:
             if "impossible" in plan.message:
                 raise BrokenError("a plan that was not found is called impossible", plan.message)
@@ -124,7 +126,7 @@ class KeptMotions(Attack):
         return SAMPLES
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
-        known = ("does not hold there", "infinite", "limit", "nothing would be kept", "region")
+        known = ("does not hold there", "infinite", "limit", "nothing would be kept", "region", "same configuration")
         if not any(word in str(error) for word in known):
             raise BrokenError("a right input was refused", error)
 

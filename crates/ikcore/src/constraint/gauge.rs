@@ -153,7 +153,7 @@ impl Gauge {
             Kind::TurnAbout(k) => format!("rotation about {}", axis(k)),
             Kind::Tilt => "tilt".into(),
             Kind::Face { coordinate, at, above } => {
-                format!("distance {} {} = {at} m", if above { "above" } else { "below" }, axis(coordinate))
+                format!("distance {} {} = {} m", if above { "above" } else { "below" }, axis(coordinate), number(at))
             }
         }
     }

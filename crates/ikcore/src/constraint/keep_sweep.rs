@@ -227,9 +227,9 @@ fn write_sample(
     (motion, at): (&impl JointMotion, f64),
 ) {
     if samples.len() == slot {
-        let nowhere = ([0.0; 3], keeps[0].seen(&Frame::IDENTITY));
+        let nowhere = keeps.iter().map(|keep| ([0.0; 3], keep.seen(&Frame::IDENTITY))).collect();
         let q = Point::from_elem(0.0, robot.dof());
-        samples.push(Sample { q, frames: robot.frame_buffer(), seen: vec![nowhere; keeps.len()] });
+        samples.push(Sample { q, frames: robot.frame_buffer(), seen: nowhere });
     }
     let Sample { q, frames, seen } = &mut samples[slot];
     motion.write(at, q);

@@ -52,7 +52,9 @@ impl Kept<'_> {
                 JointPath::spline(motion.joints().to_vec(), &waypoints.concat(), Some(&knots), SplineEnds::NotAKnot)?;
             // A path that leaves the position limits between waypoints is none.
             let Ok(timed) = time_optimal(&path, limits, &TimingOptions::default()) else { continue };
-            if self.sweep.check(&TimedMotion::new(&timed), [0.0, timed.duration()]).is_ok() {
+            // Between waypoints at a position limit a spline may pass it by a little.
+            let is_within = limits.violations(&timed).is_empty();
+            if is_within && self.sweep.check(&TimedMotion::new(&timed), [0.0, timed.duration()]).is_ok() {
                 return Ok(Some(timed));
             }
         }
