@@ -34,6 +34,7 @@ _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
 _Tolerance: TypeAlias = float | Mapping[str, float] | Mapping[_TipKey, float]
+_Keeps: TypeAlias = Keep | list[Keep] | tuple[Keep, ...] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 @type_check_only
@@ -3367,6 +3368,25 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 # --- planning -----------------------------------------------------------------------------------
 
+@final
+class Keep:
+    def __new__(cls, target: _Targets, task: Task | None = None) -> Keep: ...
+    @property
+    def target(self) -> Any: ...
+    @property
+    def task(self) -> Task | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+def upright(
+    robot: Robot,
+    *,
+    axis: ArrayLike = (0, 0, 1),
+    direction: ArrayLike = (0, 0, -1),
+    tilt: float = 0.1,
+    tip: str | None = None,
+) -> Keep: ...
 def plan_point_to_point(
     robot: Robot,
     start: _Pose | None = None,
@@ -3381,6 +3401,7 @@ def plan_point_to_point(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3635,6 +3656,7 @@ def plan_batch(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3817,6 +3839,8 @@ class Plan:
         """Joints that went the short way round, and end whole turns away from the given end_q, each (joint, value at the end, value
         given) (rad).
         """
+    @property
+    def kept(self) -> list[tuple[Keep, _Array]]: ...
     @property
     def freed(self) -> tuple[float, float] | None:
         """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and

@@ -23,6 +23,7 @@ CASES = {
     "clear_ticks": 1,
     "dead_ends": 6,
     "clear_plans": 2,
+    "held_arms": 6,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
@@ -114,6 +115,10 @@ SPOILED = {
         "away += 0.1",
         "the arm stays away from its target",
     ),
+    "held_arms": (
+        "rates[-1], statuses[-1] = 0.01, bik.Status.CAPPED",
+        "a held arm moves on",
+    ),
     "tracker_lives": (
         "log += [('q', tracker.q + 1.0)]",
         "a command is outside the position limits",
@@ -138,6 +143,10 @@ SPOILED = {
         "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
         "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
         "the plan misses its ends",
+    ),
+    "kept_motions": (
+        "told = [0.0 * each - 1.0 for each in told]",
+        "the largest error is more than told",
     ),
     "looser_paths": (
         "plans += [(False, inf, '')]",

@@ -113,6 +113,7 @@ mod tracking {
     mod khan_2022;
     mod model_free;
     mod resolved_rate;
+    mod settling;
     mod streams;
     mod tips;
     mod track;

@@ -1,8 +1,11 @@
 //! `Keep` and `upright`: what holds at every instant of a motion.
 
+use std::f64::consts::PI;
+
 use ikcore::constraint::Keep;
 use ikcore::math::Frame;
-use ikcore::math::pose::turning;
+use ikcore::math::pose::{rows, turning};
+use ikcore::message::Setting;
 use ikcore::robot::Robot;
 use ikcore::task::{NamedTask, Subject, Target, Task, TaskKind, Tolerance};
 use pyo3::prelude::*;
@@ -12,10 +15,11 @@ use crate::convert::{point, pose_array, row, summary};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::ik::read_target;
-use crate::options::NewArguments;
+use crate::options::{NewArguments, list_text};
 use crate::robot::PyRobot;
 use crate::task::{read_task, task_object};
 use crate::tip_keys::{TipKey, in_words, key_object, read_key, subject, tips_in_words};
+use crate::wording::spelt;
 
 /// What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
 ///
@@ -88,7 +92,12 @@ impl PyKeep {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let target = self.target(py)?.repr()?.to_string().replace('\n', "");
+        let each = self.targets.iter().map(|(key, target)| -> PyResult<String> {
+            let key = key.as_ref().map(|key| Ok::<_, PyErr>(format!("{}: ", key_object(py, key)?.repr()?)));
+            Ok(key.transpose()?.unwrap_or_default() + &target_text(target))
+        });
+        let each = each.collect::<PyResult<Vec<_>>>()?.join(", ");
+        let target = if let [(None, _)] = self.targets[..] { each } else { format!("{{{each}}}") };
         let task = self.task(py)?.map_or(Ok(String::new()), |task| task.repr().map(|text| format!(", {text}")))?;
         Ok(format!("Keep({target}{task})"))
     }
@@ -152,7 +161,8 @@ impl PyKeep {
 ///     A `Keep`, for `keep=` of `plan_point_to_point` and others.
 ///
 /// Raises:
-///     InvalidInputError: an axis or a direction of length zero; a tilt that is not positive; an unknown tip.
+///     InvalidInputError: an axis or a direction of length zero; a tilt that is not positive, or beyond pi; no tip of several.
+///     UnknownNameError: a tip that the robot does not have.
 ///
 /// For example:
 ///
@@ -178,6 +188,10 @@ pub fn upright(
     let (axis, direction) = (vector("axis", axis, [0.0, 0.0, 1.0])?, vector("direction", direction, [0.0, 0.0, -1.0])?);
     if !(tilt > 0.0) {
         return Err(invalid(format!("tilt must be positive, got {tilt:?}")));
+    }
+    if tilt > PI {
+        let degrees = spelt(&Setting::RadiansFromDegrees);
+        return Err(invalid(format!("tilt must be at most pi, at which any axis is allowed, got {tilt:?}; {degrees}")));
     }
     let key = match tip {
         None if robot.core.tip_count() == 1 => None,
@@ -212,6 +226,16 @@ pub fn read_keeps(robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult
         return Ok(all);
     }
     one(value)
+}
+
+/// Formats a target in Python syntax.
+fn target_text(target: &Target) -> String {
+    match target {
+        Target::Position(position) => list_text(position),
+        Target::Pose(frame) | Target::Orientation(frame) | Target::Pointing { frame, .. } => {
+            format!("{:?}", rows(&(*frame).into()).as_chunks::<4>().0)
+        }
+    }
 }
 
 fn target_object<'py>(py: Python<'py>, target: &Target) -> PyResult<Bound<'py, PyAny>> {

@@ -10,7 +10,7 @@ from .. import solve as solve_target
 from .options import (
     AsJson,
     BaseLink,
-    FirstPart,
+    First,
     JointWeights,
     LinkRadius,
     Margin,
@@ -41,12 +41,7 @@ def solve(
         list[str] | None,
         typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),
     ] = None,
-    first: Annotated[
-        FirstPart | None,
-        typer.Option(
-            help="Part of a pose to meet exactly where the whole cannot be met; the other as near as it allows."
-        ),
-    ] = None,
+    first: First = None,
     start: Start = None,
     joint_weights: JointWeights = None,
     solver: Annotated[

@@ -9,7 +9,9 @@ use crate::limits::{Limits, ROUNDING, StartSlack};
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state_from, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
-use crate::plan::{Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance};
+use crate::plan::{
+    EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance, refuse_broken,
+};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
@@ -46,6 +48,7 @@ pub(super) fn begin(
         });
     };
     check(search, velocity)?;
+    refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };

@@ -44,5 +44,5 @@ pub(super) fn gap(left: f64, examined: usize, straight: Option<String>) -> Strin
         "nothing was reached from either end".into()
     };
     let in_the_way = straight.map_or(String::new(), |wrong| format!("; on the straight way {wrong}"));
-    format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
+    format!("the way from start to end: none found in {examined} configurations; {came}{in_the_way}")
 }

@@ -49,9 +49,9 @@ impl<'a> ClearSpace<'a> {
     /// The space of a robot around which nothing is.
     ///
     /// # Errors
-    /// Those of [`Scene::new`].
+    /// Those of [`Scene::empty`].
     pub(crate) fn empty(robot: impl Into<SceneRobot<'a>>) -> Result<Self> {
-        Ok(Self { scene: Scene::new(robot, Obstacles::default())?.without_self_collision(), margin: 0.0 })
+        Ok(Self { scene: Scene::empty(robot)?, margin: 0.0 })
     }
 
     /// The space in which everything keeps `more` (m) beyond the margin.

@@ -6,6 +6,21 @@ use crate::constraint::{Keep, KeepSweep};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::timing::Violation;
+use crate::trajectory::Trajectory;
+
+/// Certifies that all of `keeps` hold along a motion; the violation where one does not.
+///
+/// # Errors
+/// None in practice: the joints are those of the robot.
+pub(crate) fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -> Result<Option<Violation>> {
+    if keeps.is_empty() {
+        return Ok(None);
+    }
+    let checked = KeepSweep::new(robot, keeps).check(&TimedMotion::new(motion), [0.0, motion.duration()]);
+    let Err(broken) = checked else { return Ok(None) };
+    let (what, [value, bound], unit) = keeps[broken.keep].worst_at(robot, &configuration_at(motion, broken.at)?);
+    Ok(Some(Violation { what, value, bound, unit: unit.into() }))
+}
 
 impl Plan {
     /// Certifies that `keeps` hold along the whole motion, unless that was done. Adds the violation where one is broken, and returns it in
@@ -21,12 +36,7 @@ impl Plan {
         if !self.violations.is_empty() {
             return Ok(None);
         }
-        let whole = [0.0, self.trajectory.duration()];
-        let checked = KeepSweep::new(robot, keeps).check(&TimedMotion::new(&self.trajectory), whole);
-        let Err(broken) = checked else { return Ok(None) };
-        let (what, [value, bound], unit) =
-            keeps[broken.keep].worst_at(robot, &configuration_at(&self.trajectory, broken.at)?);
-        let violation = Violation { what, value, bound, unit: unit.into() };
+        let Some(violation) = broken_along(robot, keeps, &self.trajectory)? else { return Ok(None) };
         let said = violation.to_string();
         self.violations.push(violation);
         Ok(Some(said))

@@ -40,6 +40,7 @@ pub(crate) use deadline::Deadline;
 pub use endpoint::Endpoint;
 pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
+pub(crate) use kept_along::broken_along;
 pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};

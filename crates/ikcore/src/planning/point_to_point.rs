@@ -164,6 +164,7 @@ fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&
             refused(message![Setting::StartVelocity, " is kept"], "begins at rest")
         }
         _ if options.has_pieces() => refused("approach, retreat and free_start are kept".into(), "has no such pieces"),
+        _ if !options.keeps.is_empty() => refused("keep is held".into(), "checks nothing on the way"),
         _ if options.task.is_some() => refused("task is kept".into(), "reaches whole targets"),
         [end] => Ok(end),
         _ => refused("several ends are taken".into(), "plans to one"),

@@ -124,6 +124,11 @@ impl SafetyFilter {
         self.around.as_ref().map(|around| &around.space)
     }
 
+    /// Whether an obstacle moves.
+    pub fn sees_motion(&self) -> bool {
+        self.around.as_ref().is_some_and(|around| around.obstacles.fastest() > 0.0)
+    }
+
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub fn velocities(&self) -> &[[f64; 3]] {
         self.around.as_ref().map_or(&[], |around| &around.obstacles.velocities)
@@ -182,18 +187,18 @@ impl SafetyFilter {
     }
 
     /// Changes the command `q` of the rule to one that keeps the arm clear and holds pairs of tips. Pairs that cannot be held
-    /// yet are ordinary tasks until they reach their relative pose.
-    pub fn filter(&mut self, context: &StepContext<'_>, q: &mut Point) -> FilterOutcome {
+    /// yet are ordinary tasks until they reach their relative pose. A `settled` arm stops, unless it has to move.
+    pub fn filter(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> FilterOutcome {
         let wanted = q.clone();
         match context.errors() {
             Some(errors) => self.progress.begin_tick(errors, context.dt),
             None => self.progress.restart(),
         }
-        let held = if context.aims.has_pairs() { self.filter_with_pairs(context, q) } else { None };
+        let held = if context.aims.has_pairs() { self.filter_with_pairs(context, settled, q) } else { None };
         let is_held = held.unwrap_or_else(|| {
             self.stop.clear();
             q.copy_from_slice(&wanted);
-            self.filter_one_by_one(context, q)
+            self.filter_one_by_one(context, settled, q)
         });
         if let Some(around) = &mut self.around {
             around.since += context.dt;
@@ -206,7 +211,7 @@ impl SafetyFilter {
 
     /// Changes the command `q` to one that keeps the arm clear and all constraints, for joints that stop one by one. Returns whether
     /// something held it back.
-    fn filter_one_by_one(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
+    fn filter_one_by_one(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> bool {
         if self.around.is_none() && self.kept.is_none() {
             return false;
         }
@@ -215,7 +220,7 @@ impl SafetyFilter {
         let rest = stop.rest();
         let wanted = q.clone();
         let blocked = self.set_rows(context, (&rest, stop.ticks_to_stop()), &wanted);
-        let admitted = self.admitted(&brake);
+        let admitted = self.admitted(settled, &brake);
         self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
         let nearer_than = (admitted != Admitted::All).then_some(&rest);
         let allowed = admitted != Admitted::Stopping
@@ -236,19 +241,21 @@ impl SafetyFilter {
         if admitted == Admitted::All {
             return *q != wanted;
         }
-        let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
+        // An arm that is only settled is held by obstacles if these forbid what the rule proposes, nearer or not.
+        let is_held = self.progress.admitted() != Admitted::All;
+        let nearer_than = (is_held && self.progress.is_freed_nearer()).then_some(&rest);
         blocked || !self.allows(context, nearer_than, &wanted)
     }
 
     /// Changes the command `q` to one that holds the pairs and keeps the arm clear and all constraints. Returns whether more than the
     /// pairs changed it; `None` if they cannot be held.
-    fn filter_with_pairs(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
+    fn filter_with_pairs(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> Option<bool> {
         let mut brake = self.stop.next().cloned().unwrap_or_else(|| context.braking());
         context.tick_box.bounds.clip(&mut brake);
         let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
         let wanted = q.clone();
         let mut blocked = self.set_rows(context, (&rest, self.stop.ticks_to_stop()), &wanted);
-        let admitted = self.admitted(&brake);
+        let admitted = self.admitted(settled, &brake);
         self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
         let best = q.clone();
         for part in [1.0].into_iter().chain(PARTS).filter(|_| admitted != Admitted::Stopping) {
@@ -277,9 +284,11 @@ impl SafetyFilter {
 
     /// Decides which commands are admitted; `brake` is the braking command. An arm that is too near to a body or has to evade
     /// moves in any case.
-    fn admitted(&mut self, brake: &[f64]) -> Admitted {
+    fn admitted(&mut self, settled: bool, brake: &[f64]) -> Admitted {
         if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
             self.progress.restart();
+        } else if settled {
+            return Admitted::Stopping;
         }
         self.progress.admitted()
     }

@@ -9,6 +9,7 @@ use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
 use super::safety_filter::{FilterOutcome, FilterWork, Holder, SafetyFilter};
+use super::settling::Settling;
 use super::step::Step;
 use super::step_context::StepContext;
 use super::target_stream::Arrival;
@@ -44,6 +45,8 @@ pub struct Session {
     safety: Option<Box<SafetyFilter>>,
     /// Way back of an arm that comes no nearer to its target; `None` for other rules, and tasks with a region.
     way_back: Option<Box<WayBack>>,
+    /// Rest of an arm that comes no nearer; `None` where there is no way back.
+    settling: Option<Settling>,
     /// Whether the arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -77,7 +80,8 @@ impl Session {
             arm.robot.solves_at_once(); // prepares the closed form
             Box::new(WayBack::new(&arm.limits, options.recover))
         });
-        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, stopping: false, seed, rng })
+        let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
+        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, settling, stopping: false, seed, rng })
     }
 
     /// Accepted configuration (n,).
@@ -210,6 +214,7 @@ impl Session {
         let sampled_ago = self.arm.targets.take(arrival, to)?.map(|ago| ago / self.arm.dt);
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
+        let settled = self.is_settled();
         let mut found = if self.stopping || self.arm.targets.last().is_empty() {
             self.arm.allow_braking();
             self.brake()
@@ -219,10 +224,11 @@ impl Session {
             self.arm.allow_braking();
             found
         };
-        let held = if found.interrupted || self.stopping { None } else { self.filter(&mut found) };
+        let held = if found.interrupted || self.stopping { None } else { self.filter(settled, &mut found) };
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
+            self.watch_for_rest(&found, status);
             self.arm.accept(&found.q, found.assessment.score.value);
             self.look_for_way_back(&mut found, monitor);
         }
@@ -346,22 +352,61 @@ impl Session {
         self.safety.as_ref().filter(|_| !self.stopping).and_then(|safety| safety.holds_goal())
     }
 
-    /// Changes the command `found` by the rule to one that keeps the arm clear and all constraints, and holds pairs of tips. Returns
-    /// what caused the change, if it was not the pairs.
-    fn filter(&mut self, found: &mut TickResult) -> Option<Holder> {
-        let safety = self.safety.as_mut()?;
+    /// Whether the arm stays at rest because it comes no nearer to its targets.
+    fn is_settled(&mut self) -> bool {
+        let moves = self.stopping || self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
+        match &mut self.settling {
+            Some(settling) if !moves => settling.begin_tick(self.arm.targets.last()),
+            Some(settling) => {
+                settling.restart();
+                false
+            }
+            None => false,
+        }
+    }
+
+    /// Ends a tick for the rest of an arm that comes no nearer. Obstacles that move may yet free it.
+    fn watch_for_rest(&mut self, found: &TickResult, status: Status) {
+        let Some(settling) = &mut self.settling else { return };
+        if self.safety.as_ref().is_some_and(|safety| safety.sees_motion()) {
+            settling.restart();
+            return;
+        }
+        let is_held = match status {
+            Status::HeldByObstacle | Status::HeldByConstraint => true,
+            Status::Solved => self.goals.is_empty(),
+            _ => self.way_back.as_ref().is_some_and(|way_back| way_back.away().is_some()),
+        };
+        settling.end_tick(&found.assessment, is_held, self.arm.rests_at(&found.q), self.arm.dt);
+    }
+
+    /// Changes the command `found` by the rule to one that keeps the arm clear and all constraints, and holds pairs of tips or, for a
+    /// `settled` arm, to the braking one. Returns what caused the change, if it was not the pairs.
+    fn filter(&mut self, settled: bool, found: &mut TickResult) -> Option<Holder> {
+        let Some(safety) = &mut self.safety else {
+            if settled {
+                found.q = self.arm.context().braking();
+                self.note_changed(found);
+            }
+            return None;
+        };
         let context = self.arm.context();
         // On a way back the distance from the target shows no progress: the targets do not judge the commands.
         let is_returning = self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
         let context = if is_returning { StepContext { aims: Aims::default(), ..context } } else { context };
-        let FilterOutcome { changed, held_by } = safety.filter(&context, &mut found.q);
+        let FilterOutcome { changed, held_by } = safety.filter(&context, settled, &mut found.q);
         if changed {
-            self.arm.assess(found);
-            if self.arm.limited.is_none() {
-                self.running.forget();
-            }
+            self.note_changed(found);
         }
         held_by
+    }
+
+    /// Assesses a command that is not the one of the rule.
+    fn note_changed(&mut self, found: &mut TickResult) {
+        self.arm.assess(found);
+        if self.arm.limited.is_none() {
+            self.running.forget();
+        }
     }
 
     /// Whether all bodies keep the margin at `q`; true if collisions are not checked.
@@ -405,6 +450,10 @@ impl Session {
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
     pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
+        let rest = velocities.is_empty() && self.obstacle_velocities().is_empty();
+        if rest && obstacles == self.surroundings.obstacles {
+            return Ok(()); // A loop that gives the same in every tick frees no arm.
+        }
         let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
@@ -423,6 +472,7 @@ impl Session {
         if let Some(way_back) = &mut self.way_back {
             way_back.note_replaced();
         }
+        self.settling.iter_mut().for_each(Settling::restart);
         Ok(())
     }
 
@@ -497,6 +547,7 @@ impl Session {
         if let Some(way_back) = &mut self.way_back {
             way_back.restart();
         }
+        self.settling.iter_mut().for_each(Settling::restart);
         self.start_rule();
         if let Some(safety) = &mut self.safety {
             safety.forget();

@@ -155,7 +155,8 @@ impl PyPlan {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
-    /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+    /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
+    /// the plan keeps on the way, which is certified again.
     ///
     /// A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
     /// a whole and passes exactly the same configurations.
@@ -166,7 +167,7 @@ impl PyPlan {
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
     ///     InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
-    ///         acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
+    ///         acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
     ///     UnsupportedLimit: limits that vary in time.
     fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let robot = self.robot.bind(py);
