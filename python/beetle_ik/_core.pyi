@@ -689,6 +689,7 @@ class Status(IntEnum):
     - `HELD_BY_OBSTACLE`: A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.
     - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
+    - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
     """
 
     SOLVED = 0
@@ -2642,6 +2643,8 @@ def track(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
             several tips all of whose collision shapes are known.
+        keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+            each. The arm goes as near to the path as that allows. None: nothing.
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
             at its "start".
@@ -2657,10 +2660,11 @@ def track(
         A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
+        InvalidInputError: wrong shape, NaN, a time step that is not positive, a joint that no limit slows down, or a start at which
+            something in keep does not hold.
         LimitError: a start farther outside its limits than start_slack, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
-            region; position, acceleration or jerk limits that vary in time, among obstacles.
+            region; position, acceleration or jerk limits that vary in time, among obstacles or with keep.
 
     For example:
 
@@ -2837,6 +2841,7 @@ class Tracker:
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
         obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
             ticks: `tracker.obstacles = [...]`.
+        keep: a `Keep`, for example from `upright`, or several, as in `track`. The stop after each command keeps them too.
         seed: seed of the random draws.
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
@@ -2962,8 +2967,8 @@ class Step:
     @property
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
-        HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; IMPROVED if nearer than in the previous step;
-        otherwise CAPPED.
+        HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
     @property
     def message(self) -> str:

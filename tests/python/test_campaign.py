@@ -144,6 +144,10 @@ SPOILED = {
         "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
         "the plan misses its ends",
     ),
+    "tracker_keeps": (
+        "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
+        "what is kept does not hold",
+    ),
     "kept_motions": (
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",

@@ -40,11 +40,13 @@ q = np.array(q)
 
 class Keeps(Attack):
     name = "tracker_keeps"
-    promise = "What a tracker keeps holds at every instant, between ticks and during stops too, under limits of any order"
+    promise = (
+        "What a tracker keeps holds at every instant, between ticks and during stops too, under limits of any order"
+    )
     page = "tracking"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """A hard case begins at a tolerance, or narrow ones; it has targets out of reach, long ticks and round numbers."""
+        """A hard case begins at a tolerance, or has narrow ones; it has targets out of reach and round numbers."""
         joints = arms.easy_arm(random, int(random.integers(3, 8)))
         arms.put(joints, random, hard, 4)
         rates = tuple(np.exp(random.uniform(np.log([0.3, 1.0, 10.0]), np.log([3.0, 20.0, 500.0]))).tolist())

@@ -4,11 +4,12 @@ use crate::common::executed_curve::ExecutedCurve;
 use ikcore::constraint::Keep;
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::math::{Pose, pose};
+use ikcore::path::{Circle, Path, Plane};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::{NamedTask, Subject, Target, Task, TaskKind, Tolerance};
-use ikcore::tracking::{Arrival, Session, TrackOptions};
+use ikcore::tracking::{Arrival, Session, TrackOptions, track};
 
 use super::clear::{START, all_limits, panda, random_obstacles, surroundings};
 use super::tips;
@@ -158,7 +159,7 @@ fn an_arm_comes_as_near_as_what_is_kept_allows() {
     let robot = Robot::named("panda").unwrap();
     let home = robot.fk(&START).unwrap();
     for limits in all_limits(&robot) {
-        let (keep, _) = corridor(&home, 0.02, FREE.min(1e3));
+        let (keep, _) = corridor(&home, 0.02, 1e3);
         let mut session = session(&robot, &START, 0.01, limits, vec![keep]);
         let mut target = home;
         let side = home.rotation.matrix().column(2) * 0.1 + home.rotation.matrix().column(1) * 0.05;
@@ -204,13 +205,13 @@ fn a_start_that_breaks_a_constraint_is_refused_with_its_error() {
     let error = Session::new(&robot, &START, 0.01, &options).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "start: what is to be kept on the way does not hold there: tilt 0.25 rad of at most 0.1"
+        "start: what is to be kept on the way does not hold there: tilt 0.2500 rad of at most 0.1000"
     );
     let mut session = session(&robot, &START, 0.01, Limits::of(&robot), vec![upright(&home, 0.1).0]);
     let mut away = START;
     away[5] += 0.5;
     let error = session.reset(&away, None, None).unwrap_err().to_string();
-    assert_eq!(error, "q: what is to be kept on the way does not hold there: tilt 0.5 rad of at most 0.1");
+    assert_eq!(error, "q: what is to be kept on the way does not hold there: tilt 0.5000 rad of at most 0.1000");
 }
 
 #[test]
@@ -222,4 +223,18 @@ fn limits_that_vary_are_refused_with_constraints() {
     let options = TrackOptions { limits: Some(limits), keeps: vec![upright(&home, 0.1).0], ..TrackOptions::default() };
     let error = Session::new(&robot, &START, 0.01, &options).unwrap_err().to_string();
     assert!(error.contains("tracking with constraints"), "{error}");
+}
+
+/// Without a start, one is found on the path where all holds.
+#[test]
+fn a_start_is_found_where_all_holds() {
+    let robot = Robot::named("panda").unwrap();
+    let home = robot.fk(&START).unwrap();
+    let center: [f64; 3] = home.translation.vector.into();
+    let path = Path::new(Circle::new(Plane::xy(center).unwrap(), 0.1, 4.0).unwrap()).sample(0.01).unwrap();
+    let (keep, judge) = upright(&home, 0.05);
+    let options = TrackOptions { keeps: vec![keep], ..TrackOptions::default() };
+    let record = track(&robot, &path, None, &options, &mut Unattended).unwrap();
+    let worst = record.q.chunks(7).map(|q| judge(&robot, q)).fold(f64::NEG_INFINITY, f64::max);
+    assert!(worst <= 0.0 && record.status == Status::Solved, "{worst} {}", record.message());
 }

@@ -192,7 +192,10 @@ impl<'a> KeepSweep<'a> {
         let is_open = |(number, keep): &(usize, &Keep)| {
             let (origin, frames) = (&first.seen[*number].0, &first.frames);
             let bend = TipBend::of(robot, keep.subject(), (origin, frames), [change, off_line]);
-            let points = [first, last].into_iter().chain(beside).map(|sample| &sample.seen[*number].1);
+            // Places that coincide count once: where an arm that rests begins to move, they would hide that it gets away from one.
+            let another = (last.q != first.q).then_some(last);
+            let beside = beside.iter().filter(|sample| sample.q != first.q && sample.q != last.q);
+            let points = std::iter::once(first).chain(another).chain(beside).map(|sample| &sample.seen[*number].1);
             let bounds = keep.gauges.iter().map(|gauge| gauge.bound(points.clone(), &bend));
             !bounds.enumerate().all(|(gauge, bound)| thresholds.takes(*number, gauge, bound))
         };

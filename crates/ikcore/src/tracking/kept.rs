@@ -102,7 +102,7 @@ impl Kept {
 
     /// Whether the motion until `end` (ticks) is certified. The curve of a spline before tick 0 depends on the command, too.
     pub fn certifies(&mut self, motion: &impl JointMotion, end: f64) -> bool {
-        self.holds_on(motion, [if motion.is_spline() { -1.0 } else { 0.0 }, end])
+        (!motion.is_spline() || self.holds_on(motion, [-1.0, 0.0])) && self.holds_on(motion, [0.0, end])
     }
 
     /// Whether the straight line of the joints between two configurations is certified.

@@ -560,12 +560,11 @@ impl Session {
 /// The constraints `keeps` of an arm, which hold where it starts; `None` without any.
 ///
 /// # Errors
-/// [`Error::Contradiction`] for a tip that `robot` does not have, and for a start that breaks a constraint.
+/// [`Error::Contradiction`] for a start that breaks a constraint.
 fn kept_by(keeps: &[Keep], robot: &Robot, arm: &TrackedArm) -> Result<Option<Kept>> {
     if keeps.is_empty() {
         return Ok(None);
     }
-    keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     refuse_broken("start", keeps, robot, &arm.q)?;
     Ok(Some(Kept::new(Arc::new(robot.clone()), keeps.to_vec())))
 }

@@ -85,9 +85,10 @@ impl TrackOptions {
         NamedTask::of_only(self.task, self.tolerance).validated()
     }
 
-    /// Checks that rule and task support the robot's number of tips.
+    /// Checks that rule and task support the robot's number of tips, and that it has those of the constraints.
     pub(super) fn require_tips(&self, robot: &Robot) -> Result<()> {
         self.rule.require_tips(robot)?;
+        self.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
         if self.task.is_some() { robot.require_one_tip(Setting::OneTask) } else { Ok(()) }
     }
 

@@ -64,8 +64,8 @@ outcome! {
     /// Whether the tip is within the tolerances.
     success,
     /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
-    /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does; IMPROVED if nearer than in the previous step;
-    /// otherwise CAPPED.
+    /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+    /// IMPROVED if nearer than in the previous step; otherwise CAPPED.
     status: result.core.status,
     message: result.sentence(),
     /// Evaluations of the forward kinematics.

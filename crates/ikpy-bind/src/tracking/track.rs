@@ -242,8 +242,8 @@ impl PyTrackResult {
 ///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
-///     InvalidInputError: a start at which something in keep does not hold.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, a joint that no limit slows down, or a start at which
+///         something in keep does not hold.
 ///     LimitError: a start farther outside its limits than start_slack, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
 ///         region; position, acceleration or jerk limits that vary in time, among obstacles or with keep.
