@@ -58,20 +58,13 @@ pub fn is_list(value: &Bound<'_, PyAny>) -> bool {
 
 /// Converts an array-like to float64 in C order; copies only if needed. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    plain_array(value).map_or_else(|| converted(what, value), Ok)
-}
-
-/// Returns an array of numpy that needs no conversion; None for anything else. The usual argument: looked at once.
-pub fn plain_array<'py>(value: &Bound<'py, PyAny>) -> Option<Numbers<'py>> {
-    if !value.is_exact_instance_of::<PyUntypedArray>() {
-        return None;
+    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        && value.is_exact_instance_of::<PyUntypedArray>()
+        && array.is_c_contiguous()
+        && is_aligned(array)
+    {
+        return Ok(Numbers(array.clone()));
     }
-    let array = value.cast::<PyArrayDyn<f64>>().ok()?;
-    (array.is_c_contiguous() && is_aligned(array)).then(|| Numbers(array.clone()))
-}
-
-/// Converts anything else.
-fn converted<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if is_masked(value)? {
         return Err(invalid(format!("{what} has masked entries: replace them first, such as by .filled(value)")));
     }
@@ -233,11 +226,7 @@ pub fn shape_text(shape: &[usize]) -> String {
 
 /// Reads a one-dimensional array-like.
 pub fn vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    one_dimension(what, &array(what, value)?)
-}
-
-/// Returns the numbers of a one-dimensional array.
-pub fn one_dimension(what: &str, array: &Numbers<'_>) -> PyResult<Vec<f64>> {
+    let array = array(what, value)?;
     match array.shape() {
         [_] => Ok(array.as_slice()?.to_vec()),
         shape => Err(invalid(format!("{what}: expected one dimension, got shape {}", shape_text(shape)))),

@@ -5,34 +5,29 @@ use ikcore::units;
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Rows, array, is_list, one_dimension, own, plain_array, shape_text, table};
+use crate::convert::{Numbers, Rows, array, is_list, own, shape_text, table, vector};
 use crate::error::{invalid, raise};
 use crate::python_calls;
 use crate::units::doubt;
 
 /// Reads a configuration (n,) in the order of q; values with names are put into it.
 pub fn joint_vector(robot: &Robot, what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let q = one_dimension(what, &numbers(robot, what, value)?)?;
+    let q = match in_order(robot, value)? {
+        Some(ordered) => vector(what, &ordered),
+        None => vector(what, value),
+    }?;
     doubt(units::of_configurations(robot, what, &q))?;
     Ok(q)
 }
 
 /// Reads an array of configurations; values with names are put into the order of q.
 pub fn joint_array<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    let numbers = numbers(robot, what, value)?;
+    let numbers = match in_order(robot, value)? {
+        Some(ordered) => array(what, &ordered),
+        None => array(what, value),
+    }?;
     doubt(units::of_configurations(robot, what, numbers.as_slice()?))?;
     Ok(numbers)
-}
-
-/// Reads numbers; those with names are put into the order of q.
-fn numbers<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    match plain_array(value) {
-        Some(numbers) => Ok(numbers),
-        None => match in_order(robot, value)? {
-            Some(ordered) => array(what, &ordered),
-            None => array(what, value),
-        },
-    }
 }
 
 /// Reads (n,) or (m, n); values with names are put into the order of q.
