@@ -185,20 +185,3 @@ fn random_obstacles_are_given_again_without_a_change() {
     };
     assert_eq!(run(true), run(false));
 }
-#[test]
-fn zz_trace() {
-    for seed in [465, 1437, 2122] {
-        let (mut session, target) = scene(seed).unwrap();
-        let dt = session.dt();
-        println!("seed {seed} dt {dt}");
-        let mut last = String::new();
-        for tick in 0..(15.0 / dt) as usize {
-            let step = session.step(&target, &mut Unattended).unwrap();
-            let said = format!("{:?} {:?} moving {}", step.status, step.away.map(|a| a.way), fastest(&session) > 1e-3);
-            if said != last {
-                println!("{:.2} {said} {:.4} {:?}", tick as f64 * dt, fastest(&session), step.error);
-                last = said;
-            }
-        }
-    }
-}

@@ -73,9 +73,11 @@ impl Limits {
     fn position_lock(&self) -> Option<Message> {
         let [lower, upper] = [Field::Lower, Field::Upper].map(|field| self.field(field));
         let (lower, upper) = (lower?, upper?);
-        let is_equal = |j: &usize| matches!((&lower[*j], &upper[*j]), (Profile::Constant(a), Profile::Constant(b)) if a == b);
+        let is_equal =
+            |j: &usize| matches!((&lower[*j], &upper[*j]), (Profile::Constant(a), Profile::Constant(b)) if a == b);
         let joints: Vec<&str> = (0..self.dof()).filter(is_equal).map(|j| self.joint_name(j)).collect();
-        let problem = || format!("{} cannot move, since its lower and upper limit are equal: give ", named_joints(&joints));
+        let problem =
+            || format!("{} cannot move, since its lower and upper limit are equal: give ", named_joints(&joints));
         (!joints.is_empty()).then(|| message![problem(), Setting::Limit("lower"), " and ", Setting::Limit("upper")])
     }
 
