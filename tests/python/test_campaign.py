@@ -116,7 +116,7 @@ SPOILED = {
         "the arm stays away from its target",
     ),
     "held_arms": (
-        "rates[-1], statuses[-1] = 0.01, bik.Status.CAPPED",
+        "rates[-1], statuses[-1], way_back = 0.01, bik.Status.CAPPED, 0",
         "a held arm moves on",
     ),
     "tracker_lives": (

@@ -21,12 +21,14 @@ obstacles = [bik.obstacles.Box(center=c, size=s) if s[0] > s[1] else
              bik.obstacles.Sphere(center=c, radius=s[0]) for c, s in zip(centers, sizes)]
 tracker = bik.Tracker(robot, start, dt=dt, limits=limits, obstacles=obstacles,
                       margin=margin, self_collision=self_collision)
-rates, statuses, clearances = [], [], []
+rates, statuses, clearances, way_back = [], [], [], 0
 for tick in range(round(time / dt)):
     if again:
         tracker.obstacles = list(obstacles)
     step = tracker.step(target)
     rates.append(np.abs(step.qd).max())
+    if rates[-1] > rest and step.message.startswith("on the way"):
+        way_back = tick
     statuses.append(step.status)
     clearances.append(step.clearance)
 """
@@ -34,9 +36,7 @@ for tick in range(round(time / dt)):
 
 class HeldArms(Attack):
     name = "held_arms"
-    promise = (
-        "An arm that obstacles or limits keep from a target at rest reaches it or comes to rest, and keeps the margin"
-    )
+    promise = "An arm that is kept from a target at rest reaches it or comes to rest, and keeps the margin"
     page = "scenes"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
@@ -45,7 +45,7 @@ class HeldArms(Attack):
         low, high = np.maximum(arm.lower, -3.0), np.minimum(arm.upper, 3.0)
         start, end = random.uniform(low, high), random.uniform(low, high)
         count = int(random.integers(2, 12 if hard else 7))
-        centers = random.uniform(-0.8, 0.8, (count, 3)) + [0.0, 0.0, 0.5]
+        centers = random.uniform(-0.8, 0.8, (count, 3)) + np.array([0.0, 0.0, 0.5])
         sizes = random.uniform(0.05, 0.4, (count, 3))
         if hard and random.random() < 0.5:
             start, end, centers, sizes = (np.round(values, 1) for values in (start, end, centers, sizes + 0.05))
@@ -71,19 +71,20 @@ class HeldArms(Attack):
             f"target, limits, margin, dt = {target}, bik.Limits({limits}), {MARGIN}, {case['dt']}\n"
             f"centers = {[center for center, _ in case['obstacles']]}\n"
             f"sizes = {[size for _, size in case['obstacles']]}\n"
-            f"time, self_collision, again = {RESTS_AFTER + RESTS_FOR}, {case['self_collision']}, {case['again']}\n{HELD}"
+            f"time, rest, again = {RESTS_AFTER + RESTS_FOR}, {REST}, {case['again']}\n"
+            f"self_collision = {case['self_collision']}\n{HELD}"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         rates, statuses = np.array(left["rates"]), left["statuses"]
-        late = rates[round(RESTS_AFTER / case["dt"]) :]
-        if statuses[-1] != bik.Status.SOLVED and late.max() > REST:
+        if statuses[0] == bik.Status.IN_COLLISION:
+            return 0  # it has to move out
+        late = rates[left["way_back"] + round(RESTS_AFTER / case["dt"]) :]  # a way back takes its time
+        if statuses[-1] != bik.Status.SOLVED and late.max(initial=0.0) > REST:
             raise BrokenError("a held arm moves on", {"rate": late.max(), "last": statuses[-1]})
-        if (
-            statuses[0] != bik.Status.IN_COLLISION
-            and min(left["clearances"]) < min(MARGIN, left["clearances"][0]) - 1e-6
-        ):
-            raise BrokenError("the margin is not kept", min(left["clearances"]))
+        begun, nearest = left["clearances"][0], min(left["clearances"])
+        if nearest < min(MARGIN, begun) - 1e-6:
+            raise BrokenError("the margin is not kept", nearest)
         return len(rates)
 
 

@@ -6,7 +6,7 @@ use std::fmt;
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::Pose;
-use crate::error::{Error, Result, require_finite};
+use crate::error::{Error, Result, given, require_finite};
 
 /// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation: that of three decimals.
 const ORTHOGONALITY_TOLERANCE: f64 = 2e-3;
@@ -190,7 +190,7 @@ fn fault_of_last_row(matrix: &Matrix4<f64>) -> Option<String> {
     if !off {
         return None;
     }
-    let row = last_row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let row = last_row.iter().map(|entry| given(*entry)).collect::<Vec<_>>().join(", ");
     let transposed = matrix.column(3).iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(entry, due)| *entry == due);
     let remedy = if transposed { ": transpose it, so that the position is its last column" } else { "" };
     Some(format!("its last row is ({row}), not (0, 0, 0, 1){remedy}"))

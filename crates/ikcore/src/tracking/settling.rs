@@ -103,3 +103,70 @@ impl Settling {
         is_nearer
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objective::Score;
+    use crate::robot::Robot;
+    use crate::task::SquaredError;
+
+    const DT: f64 = 0.01;
+
+    fn target(x: f64) -> [Target; 1] {
+        [Target::Position([x, 0.0, 0.0])]
+    }
+
+    fn watch() -> Settling {
+        Settling::new(&Limits::of(&Robot::named("panda").unwrap()))
+    }
+
+    /// Runs an arm with these errors in position to a target that stands still; returns the tick in which it is settled.
+    fn settles(watch: &mut Settling, errors: impl Iterator<Item = f64>, is_held: bool) -> Option<usize> {
+        errors.take(1000).position(|error| {
+            let is_settled = watch.begin_tick(&target(1.0));
+            tick(watch, error, is_held);
+            is_settled
+        })
+    }
+
+    fn tick(watch: &mut Settling, error: f64, is_held: bool) {
+        let score = Score { value: error * error, solved: error == 0.0 };
+        let error = SquaredError { position: Some(error * error), rotation: None };
+        watch.end_tick(&Assessment { score, error }, is_held, true, DT);
+    }
+
+    #[test]
+    fn an_arm_that_comes_no_nearer_settles_after_two_seconds() {
+        let near = (199, 203);
+        for error in [0.0, 0.2, 5.0] {
+            let tick = settles(&mut watch(), std::iter::repeat(error), true).unwrap();
+            assert!((near.0..=near.1).contains(&tick), "{error}: {tick}");
+        }
+        let to_and_fro = (0..).map(|tick| 0.2 + 0.05 * f64::from(tick % 40));
+        assert!(settles(&mut watch(), to_and_fro, true).is_some());
+        let creeping = (0..).map(|tick| 0.2 - 1e-5 * f64::from(tick));
+        assert!(settles(&mut watch(), creeping, true).is_some());
+    }
+
+    #[test]
+    fn one_that_comes_nearer_or_that_nothing_holds_does_not() {
+        let nearer = (0..).map(|tick| 0.5 * 0.999_f64.powi(tick));
+        assert_eq!(settles(&mut watch(), nearer, true), None);
+        let far = (0..).map(|tick| 100.0 - 1e-3 * f64::from(tick) / 2.0 * 10.0);
+        assert_eq!(settles(&mut watch(), far, true), None);
+        assert_eq!(settles(&mut watch(), std::iter::repeat(0.2), false), None);
+    }
+
+    #[test]
+    fn a_target_that_moves_and_a_push_end_the_rest() {
+        let mut watch = watch();
+        settles(&mut watch, std::iter::repeat(0.2), true).unwrap();
+        assert!(watch.begin_tick(&target(1.009)), "5 % of the error is noise");
+        assert!(!watch.begin_tick(&target(1.011)));
+        tick(&mut watch, 0.2, true);
+        settles(&mut watch, std::iter::repeat(0.2), true).unwrap();
+        tick(&mut watch, 0.22, true);
+        assert!(!watch.begin_tick(&target(1.0)));
+    }
+}
