@@ -1,4 +1,4 @@
-//! Goal of one query, and how near a turn of the last joint comes to its orientation.
+//! PositionGoal of one query, and how near a turn of the last joint comes to its orientation.
 
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -7,8 +7,8 @@ use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 use crate::math::vector3::{Vector, cross, dot, sub};
 
-/// Goal of one query, in the frame of the first link.
-pub struct Goal<'a> {
+/// PositionGoal of one query, in the frame of the first link.
+pub struct PositionGoal<'a> {
     /// Target position (m).
     pub position: Vector,
     /// Rotation from the zero configuration to the target orientation.
@@ -42,8 +42,8 @@ pub struct TurnRange {
     least: f64,
 }
 
-impl Goal<'_> {
-    /// Goal for the point `on_axis` of the last axis instead of the tip: where it is if the tip has the goal's pose.
+impl PositionGoal<'_> {
+    /// PositionGoal for the point `on_axis` of the last axis instead of the tip: where it is if the tip has the goal's pose.
     pub fn seen_from(&self, on_axis: Vector) -> Self {
         let off = self.turned.turn::<Baseline>(&sub(&self.tip, &on_axis));
         Self { position: sub(&self.position, &off), tip: on_axis, ..*self }

@@ -2,8 +2,13 @@
 
 use smallvec::SmallVec;
 
-use super::{MOST, SEEDS};
 use crate::closed_form::angle::Angle;
+
+/// Largest number of joints.
+pub const MOST: usize = 5;
+
+/// Largest number of seeds.
+pub(crate) const SEEDS: usize = 8;
 
 /// Solutions for each value of the scan and each turn that the fifth joint begins with.
 pub const BRANCHES: usize = 4;
@@ -16,7 +21,7 @@ const UNLIKE: f64 = -4.0;
 
 /// Configuration at or near the goal's position.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+pub struct ScanSample {
     /// 1 - cos of the angle to the target orientation; infinite without a solution.
     pub value: f64,
     /// Angles of the joints.
@@ -25,9 +30,9 @@ pub struct Sample {
 
 /// Least value along a column of the scan.
 #[derive(Debug, Clone, Copy)]
-pub struct Minimum {
+pub struct ScanMinimum {
     /// The sample with the least value.
-    pub sample: Sample,
+    pub sample: ScanSample,
     /// Value of the fourth joint there (rad).
     pub fourth: f64,
     /// Values of the samples before and after; infinite where the column begins or ends.
@@ -37,14 +42,14 @@ pub struct Minimum {
 }
 
 /// Least values of a scan.
-pub type Minima = SmallVec<[Minimum; SEEDS]>;
+pub type Minima = SmallVec<[ScanMinimum; SEEDS]>;
 
 /// Column of the scan, which follows one branch.
 #[derive(Debug, Clone, Copy)]
 struct Column {
     before: f64,
-    here: Sample,
-    next: Sample,
+    here: ScanSample,
+    next: ScanSample,
 }
 
 /// Scan in progress.
@@ -54,24 +59,24 @@ pub struct Scan {
     fourth: f64,
     rows: usize,
     /// Solutions of the row under way, with the numbers of their turns.
-    now: SmallVec<[(usize, Sample); 2 * BRANCHES]>,
+    now: SmallVec<[(usize, ScanSample); 2 * BRANCHES]>,
     found: Minima,
 }
 
-impl Sample {
+impl ScanSample {
     const NONE: Self = Self { value: f64::INFINITY, turns: [Angle::NONE; MOST] };
 }
 
 impl Scan {
     /// Scan with this many turns that the fifth joint begins with.
     pub fn new(turns: usize) -> Self {
-        let column = Column { before: f64::INFINITY, here: Sample::NONE, next: Sample::NONE };
+        let column = Column { before: f64::INFINITY, here: ScanSample::NONE, next: ScanSample::NONE };
         let columns = SmallVec::from_elem(column, turns * BRANCHES);
         Self { columns, fourth: 0.0, rows: 0, now: SmallVec::new(), found: Minima::new() }
     }
 
     /// Adds a solution of the row under way, of the turn `number`.
-    pub fn add(&mut self, number: usize, sample: Sample) {
+    pub fn add(&mut self, number: usize, sample: ScanSample) {
         if self.now.len() < self.columns.len() {
             self.now.push((number, sample));
         }
@@ -115,7 +120,7 @@ impl Scan {
         (self.fourth, self.rows) = (fourth, self.rows + 1);
         for column in &mut self.columns {
             column.before = column.here.value;
-            column.here = std::mem::replace(&mut column.next, Sample::NONE);
+            column.here = std::mem::replace(&mut column.next, ScanSample::NONE);
         }
     }
 
@@ -136,13 +141,13 @@ impl Scan {
             if place < SEEDS {
                 self.found.truncate(SEEDS - 1);
                 let beside = [*before, next.value];
-                self.found.insert(place, Minimum { sample: *here, fourth: self.fourth, beside, is_at_end });
+                self.found.insert(place, ScanMinimum { sample: *here, fourth: self.fourth, beside, is_at_end });
             }
         }
     }
 }
 
-impl Minimum {
+impl ScanMinimum {
     /// Vertex of the parabola through the three values, which are `spacing` (rad) apart: the value of the fourth joint and the least
     /// value there; `None` where the column begins or ends.
     pub fn vertex(&self, spacing: f64) -> Option<[f64; 2]> {
@@ -156,7 +161,7 @@ impl Minimum {
 }
 
 /// Sum of the cosines of the angles between the first three joints of two samples.
-pub fn likeness(a: &Sample, b: &Sample) -> f64 {
+pub fn likeness(a: &ScanSample, b: &ScanSample) -> f64 {
     (0..3).map(|k| a.turns[k].cos * b.turns[k].cos + a.turns[k].sin * b.turns[k].sin).sum()
 }
 
@@ -164,11 +169,11 @@ pub fn likeness(a: &Sample, b: &Sample) -> f64 {
 mod tests {
     use super::*;
 
-    /// Sample whose first joint is at `angle` (rad).
-    fn sample(value: f64, angle: f64) -> Sample {
+    /// ScanSample whose first joint is at `angle` (rad).
+    fn sample(value: f64, angle: f64) -> ScanSample {
         let mut turns = [Angle::NONE; MOST];
         turns[0] = Angle::by(angle);
-        Sample { value, turns }
+        ScanSample { value, turns }
     }
 
     /// Least values of rows of samples, given as value and angle.

@@ -1,12 +1,11 @@
 //! Solutions of the first three joints at a value of the fourth.
 
-use super::goal::{Goal, Trace};
-use super::scan::Sample;
-use super::{MOST, PositionArm};
+use super::goal::{PositionGoal, Trace};
+use super::of_position::PositionArm;
+use super::scan::{MOST, ScanSample};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
-use crate::closed_form::axis_chain::JointAxis;
-use crate::math::vector3::{Vector, add, sub};
+use crate::math::vector3::Vector;
 
 /// Value of the fourth joint, and what it makes of two vectors of the arm's basis.
 pub struct Fourth {
@@ -19,7 +18,7 @@ pub enum ScanFrom<'a> {
     /// The tip, which no joint after the fourth moves.
     OnAxis,
     /// The goal of a point on the last axis, near the tip.
-    Near(&'a Goal<'a>),
+    Near(&'a PositionGoal<'a>),
     /// A turn of the fifth joint.
     Turn(Angle),
 }
@@ -36,10 +35,17 @@ impl PositionArm {
 
     /// Calls `keep` with each solution at a value of the fourth joint. A tip off the last axis moves with the best turn of the fifth
     /// joint: its solutions are those after one alternation.
-    pub(super) fn visit(&self, goal: &Goal<'_>, fourth: &Fourth, first: &ScanFrom<'_>, mut keep: impl FnMut(Sample)) {
-        let wrist = |goal: &Goal<'_>, last: Angle| self.wrist(&goal.tip, fourth.turn, last);
-        let reached =
-            |goal: &Goal<'_>, last: Angle| self.three.reach(&wrist(goal, last), &goal.position, &[AngleRange::ANY; 3]);
+    pub(super) fn visit(
+        &self,
+        goal: &PositionGoal<'_>,
+        fourth: &Fourth,
+        first: &ScanFrom<'_>,
+        mut keep: impl FnMut(ScanSample),
+    ) {
+        let wrist = |goal: &PositionGoal<'_>, last: Angle| self.wrist(&goal.tip, fourth.turn, last);
+        let reached = |goal: &PositionGoal<'_>, last: Angle| {
+            self.three.reach(&wrist(goal, last), &goal.position, &[AngleRange::ANY; 3])
+        };
         let (sets, admitted) = match first {
             ScanFrom::OnAxis => {
                 let sets = self.three.reach(&wrist(goal, Angle::NONE), &goal.position, &goal.ranges);
@@ -62,24 +68,13 @@ impl PositionArm {
         }
     }
 
-    /// Point `tip` moved by the joints after the third.
-    pub(super) fn wrist(&self, tip: &Vector, fourth: Angle, fifth: Angle) -> Vector {
-        let turns = [fourth, fifth];
-        (3..self.count).rev().fold(*tip, |at, j| self.moved(j, turns[j - 3], &at))
-    }
-
-    pub(super) fn moved(&self, joint: usize, turn: Angle, point: &Vector) -> Vector {
-        let JointAxis { axis, point: on_axis, .. } = &self.joints[joint];
-        add(on_axis, &turn.about(axis, &sub(point, on_axis)))
-    }
-
     /// Trace of the rotation to the goal after the first four joints.
-    fn trace(&self, goal: &Goal<'_>, set: &[Angle; 3], fourth: &Fourth) -> Trace {
+    fn trace(&self, goal: &PositionGoal<'_>, set: &[Angle; 3], fourth: &Fourth) -> Trace {
         let turned = |v: &Vector| (0..3).rev().fold(*v, |v, j| set[j].about(&self.joints[j].axis, &v));
         goal.trace(&turned(&fourth.basis[0]), &turned(&fourth.basis[1]))
     }
 }
 
-fn sample(value: f64, [a, b, c]: &[Angle; 3], fourth: Angle, last: Angle) -> Sample {
-    Sample { value, turns: [*a, *b, *c, fourth, last] }
+fn sample(value: f64, [a, b, c]: &[Angle; 3], fourth: Angle, last: Angle) -> ScanSample {
+    ScanSample { value, turns: [*a, *b, *c, fourth, last] }
 }
