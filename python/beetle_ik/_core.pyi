@@ -34,6 +34,7 @@ _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
 _Tolerance: TypeAlias = float | Mapping[str, float] | Mapping[_TipKey, float]
+_Keeps: TypeAlias = Keep | list[Keep] | tuple[Keep, ...] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 @type_check_only
@@ -708,6 +709,7 @@ class Status(IntEnum):
     HELD_BY_OBSTACLE = 15
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
+    HELD_BY_CONSTRAINT = 18
 
 @final
 class APPS:
@@ -1598,6 +1600,7 @@ def solve(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -1631,6 +1634,11 @@ def solve(
             search
             ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
+        joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
+            (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+            it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
+            its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
+            1e8. It needs a start, and takes no goals. None: all joints cost the same.
         limits: position limits; None: the robot's.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
@@ -2185,6 +2193,7 @@ def solve_batch(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -2214,7 +2223,7 @@ def solve_batch(
             Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
-        goals, prefer: as for `solve`.
+        goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
         limits: position limits; None: the robot's.
         obstacles, margin, self_collision: as for `solve`.
         stop: budgets of each target; None: as for `solve`.
@@ -2586,11 +2595,13 @@ def track(
     solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     goals: _Goals = None,
+    joint_weights: ArrayLike | None = None,
     position_tolerance: _Tolerance = 1e-6,
     rotation_tolerance: _Tolerance = 1e-6,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
     self_collision: bool | None = None,
+    keep: Keep | Sequence[Keep] | None = None,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
@@ -2620,6 +2631,9 @@ def track(
             `Limits(velocity=np.inf)` says that jumps are meant.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
+        joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
+            that a base of weight 100 stays where the arm can do it, and still moves where only it can. Only ratios count, up to
+            1e8. They need the model-based rule. None: all joints cost the same.
         position_tolerance: error band of positions (m); for several tips also a dict.
         rotation_tolerance: error band of orientations (rad); for several tips also a dict.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
@@ -2818,7 +2832,7 @@ class Tracker:
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
             sample them.
-        goals: as in `track`.
+        goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
         obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
@@ -2853,11 +2867,13 @@ class Tracker:
         solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         goals: _Goals = None,
+        joint_weights: ArrayLike | None = None,
         position_tolerance: _Tolerance = 1e-6,
         rotation_tolerance: _Tolerance = 1e-6,
         obstacles: Iterable[Obstacle | Moving] | None = None,
         margin: float | None = None,
         self_collision: bool | None = None,
+        keep: Keep | Sequence[Keep] | None = None,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
@@ -2899,6 +2915,9 @@ class Tracker:
     @property
     def start_outside(self) -> list[tuple[str, float, float]]:
         """Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside."""
+    @property
+    def keep(self) -> tuple[Keep, ...]:
+        """What holds at every instant, a tuple of `Keep`."""
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
         """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
@@ -3349,6 +3368,25 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 # --- planning -----------------------------------------------------------------------------------
 
+@final
+class Keep:
+    def __new__(cls, target: _Targets, task: Task | None = None) -> Keep: ...
+    @property
+    def target(self) -> Any: ...
+    @property
+    def task(self) -> Task | None: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+def upright(
+    robot: Robot,
+    *,
+    axis: ArrayLike = (0, 0, 1),
+    direction: ArrayLike = (0, 0, -1),
+    tilt: float = 0.1,
+    tip: str | None = None,
+) -> Keep: ...
 def plan_point_to_point(
     robot: Robot,
     start: _Pose | None = None,
@@ -3363,6 +3401,7 @@ def plan_point_to_point(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3617,6 +3656,7 @@ def plan_batch(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3799,6 +3839,8 @@ class Plan:
         """Joints that went the short way round, and end whole turns away from the given end_q, each (joint, value at the end, value
         given) (rad).
         """
+    @property
+    def kept(self) -> list[tuple[Keep, _Array]]: ...
     @property
     def freed(self) -> tuple[float, float] | None:
         """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and

@@ -12,7 +12,9 @@
 //! | [`certified_timing`] | timings of a path that keep the margin for certain |
 //! | [`no_way`] | why there is no clear motion |
 //! | [`moving_start`] | motions that begin at a velocity |
+//! | [`line_check`] | whether a straight line can be part of a path |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`narrow_way`] | motions within constraints that leave straight lines no room |
 //! | [`shortening`] | shortcuts |
 //! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
 
@@ -23,8 +25,10 @@ mod configuration_tree;
 mod end_pair;
 mod improvement;
 mod least_displacement;
+mod line_check;
 mod minmax_planner;
 mod moving_start;
+mod narrow_way;
 mod no_way;
 mod pair_search;
 mod path_search;

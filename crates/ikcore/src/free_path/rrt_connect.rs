@@ -2,7 +2,8 @@
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
 
 use super::configuration_tree::ConfigurationTree;
-use crate::math::vector::write_between;
+use super::line_check::LineCheck;
+use crate::math::vector::{distance, write_between};
 use crate::objective::Point;
 use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
@@ -24,11 +25,17 @@ pub(super) enum Connection {
 
 /// Length of an edge while a tree grows (rad, m).
 const STRIDE: f64 = 1.0;
+/// The same within constraints, which long lines leave.
+const STRIDE_WITHIN: f64 = 0.5;
+/// Fraction of a stride by which one at least brings a tree nearer to its goal.
+const LEAST_GAIN: f64 = 0.1;
 
 /// Budget of node comparisons per configuration of the budget: about as much work again.
 const COMPARISONS: usize = 100;
 /// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
+/// Cost of a sample that no constraint admits, in comparisons.
+const PROJECTION: usize = 300;
 
 /// Number of draws after which a sample is taken even if it is not promising.
 const DRAWS: usize = 1000;
@@ -44,7 +51,7 @@ pub(super) struct Route<'r> {
 
 /// The search: lines, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
-    pub check: SampledLine<'a>,
+    pub check: LineCheck<'a>,
     /// Lowest and highest value of each joint.
     pub ranges: Vec<(f64, f64)>,
     /// Total number of configurations that may be examined.
@@ -65,7 +72,8 @@ impl<'a> TreeSearch<'a> {
         budget: usize,
         deadline: Deadline,
     ) -> Self {
-        Self { check: SampledLine::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+        let check = LineCheck { clear: SampledLine::new(scene, margin), kept: None };
+        Self { check, ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
     }
 
     /// Ranges of the joints of `robot` for a search between configurations `ends`: that of a joint without limits contains all of
@@ -113,13 +121,17 @@ impl<'a> TreeSearch<'a> {
                 from_start = !from_start;
             }
             self.draw(route, rng, &mut sample);
+            if !self.check.bring(&mut sample) {
+                self.compared += PROJECTION;
+                continue;
+            }
             self.compared += growing.len();
             let Some((near, distance)) = growing.nearest(&sample) else { break };
             if !growing.is_in_domain(near, distance) {
                 continue;
             }
-            step_towards(growing.node(near), &sample, STRIDE / distance, &mut next);
-            let grew = self.check.is_clear(growing.node(near), &next);
+            step_towards(growing.node(near), &sample, self.stride() / distance, &mut next);
+            let grew = self.check.bring(&mut next) && self.check.is_clear(growing.node(near), &next);
             growing.note(near, grew);
             if !grew {
                 continue;
@@ -139,6 +151,11 @@ impl<'a> TreeSearch<'a> {
         Connection::NotFound
     }
 
+    /// Length of an edge (rad, m).
+    fn stride(&self) -> f64 {
+        if self.check.kept.is_some() { STRIDE_WITHIN } else { STRIDE }
+    }
+
     /// Draws a configuration that is promising, if possible.
     fn draw(&mut self, route: &Route, rng: &mut LazyRng, sample: &mut [f64]) {
         for _ in 0..DRAWS {
@@ -155,19 +172,23 @@ impl<'a> TreeSearch<'a> {
     /// Grows `tree` towards `goal` stride by stride; returns the node from which a clear line leads there.
     fn reach(&mut self, tree: &mut ConfigurationTree, goal: &[f64]) -> Option<usize> {
         self.compared += tree.len();
-        let (mut at, mut distance) = tree.nearest(goal)?;
+        let (mut at, mut left) = tree.nearest(goal)?;
         let mut next = goal.to_vec();
-        while distance > STRIDE {
-            step_towards(tree.node(at), goal, STRIDE / distance, &mut next);
-            if self.is_spent() || !self.check.is_clear(tree.node(at), &next) {
-                self.gap = self.gap.min(distance);
+        let stride = self.stride();
+        while left > stride {
+            step_towards(tree.node(at), goal, stride / left, &mut next);
+            let is_open = !self.is_spent() && self.check.bring(&mut next) && self.check.is_clear(tree.node(at), &next);
+            // Constraints may lead a step aside, or back.
+            let after = distance(&next, goal);
+            if !is_open || after > left - LEAST_GAIN * stride {
+                self.gap = self.gap.min(left);
                 return None;
             }
             at = tree.add(&next, Some(at));
-            distance -= STRIDE;
+            left = after;
         }
         let met = self.check.is_clear(tree.node(at), goal);
-        self.gap = self.gap.min(if met { 0.0 } else { distance });
+        self.gap = self.gap.min(if met { 0.0 } else { left });
         met.then_some(at)
     }
 }

@@ -3,6 +3,7 @@
 use super::attempt::Attempt;
 use super::best::best_solution;
 use super::budget::Budget;
+use super::cheapest_nearby::cheapest_nearby;
 use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
@@ -120,7 +121,13 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     let at_once = by_closed_form(attempt, start).or_else(|| in_band_of_pose(attempt, start));
     let at_once = at_once.or_else(|| ranked_at_once(attempt, start));
     let mut solution = at_once.unwrap_or_else(|| searched_solution(attempt, start));
-    if solution.status != Status::Solved || context.goals().is_empty() {
+    if solution.status != Status::Solved {
+        return solution;
+    }
+    if let Some(start) = start.filter(|_| context.weights().is_some()) {
+        return cheapest_nearby(attempt, start, solution);
+    }
+    if context.goals().is_empty() {
         return solution;
     }
     if let Some(start) = start {
@@ -186,6 +193,11 @@ fn branch_in_band(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f
 /// Searches for a solution from the first start.
 fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let x0 = attempt.first_start(start);
+    if attempt.context.weights().is_some()
+        && let Some(solution) = descended(attempt, &x0)
+    {
+        return solution;
+    }
     match attempt.problem.only_target() {
         Some((target, _)) if attempt.context.comes_first(target).is_some() => attempt.solve_briefly_from(&x0),
         _ => attempt.solve_from(&x0),

@@ -106,6 +106,7 @@ struct ClearPlanner<'p> {
 enum Fault {
     TooNear(Box<TooNear>),
     OutsideLimits,
+    Broken,
     OffPath,
 }
 
@@ -164,6 +165,11 @@ impl ClearPlanner<'_> {
                     self.passage.stay_inside();
                     None
                 }
+                Some(Fault::Broken) => {
+                    // Denser waypoints follow more closely what holds at each of them.
+                    self.accuracy *= 0.25;
+                    Some(Status::Stalled)
+                }
                 Some(Fault::OffPath) if round == CLOSER_ROUNDS => return self.finished(smooth, found, None),
                 Some(Fault::OffPath) => {
                     self.accuracy *= 0.5;
@@ -190,7 +196,8 @@ impl ClearPlanner<'_> {
     ) -> Result<(FollowedPath, Option<SearchResult>)> {
         let Self { problem, space, accuracy, .. } = self;
         let starts_as_given = problem.options.start.is_some();
-        let motion = NullSpaceOffsets::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
+        let motion =
+            NullSpaceOffsets::around(&problem.robot, problem.tip_path, problem.keeps, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
         cost.space = *space;
         let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
@@ -210,6 +217,9 @@ impl ClearPlanner<'_> {
         }
         if !self.problem.limits.violations(trajectory).is_empty() {
             return Some(Fault::OutsideLimits);
+        }
+        if !self.problem.is_kept(trajectory) {
+            return Some(Fault::Broken);
         }
         self.problem.leaves_path(motion).then_some(Fault::OffPath)
     }
