@@ -7,6 +7,7 @@ use super::cheapest_nearby::cheapest_nearby;
 use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
+use super::first_of_family::FamilySearch;
 use super::nearest::nearest_solution;
 use super::ranked::{ranked_at_once, ranked_solution};
 use super::solution::Solution;
@@ -22,6 +23,9 @@ use crate::task::Target;
 
 /// Number of joints that a pose needs.
 const POSE: usize = 6;
+
+/// Descents into the tolerances of a pose before its parts are ranked.
+const DESCENTS: usize = 5;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
@@ -143,11 +147,23 @@ fn in_band_of_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Opti
     let branch = |attempt: &mut Attempt<'_, '_>| branch_in_band(attempt, pose, start);
     match start {
         Some(start) => descended(attempt, start).or_else(|| branch(attempt)),
-        None => branch(attempt).or_else(|| {
-            let x0 = attempt.first_start(None);
-            descended(attempt, &x0)
-        }),
+        None => branch(attempt).or_else(|| descended_from_scattered(attempt)),
     }
+}
+
+/// Returns the end of the first descent from a few scattered starts that is within the tolerances.
+fn descended_from_scattered(attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+    let mut x0 = attempt.first_start(None);
+    for descent in 0..DESCENTS {
+        if descent > 0 {
+            attempt.next_start(&mut x0);
+            attempt.budget.restarts += 1;
+        }
+        if let Some(found) = descended(attempt, &x0) {
+            return Some(found);
+        }
+    }
+    None
 }
 
 /// Returns the end of one descent from `x0`, if it is within the tolerances.
@@ -158,12 +174,15 @@ fn descended(attempt: &mut Attempt<'_, '_>, x0: &[f64]) -> Option<Solution> {
     }
 }
 
-/// Returns the preferred branch of `pose`, for an arm with as many joints as a pose needs.
+/// Returns the preferred branch of `pose`, for an arm with at least as many joints as a pose needs.
 fn branch_in_band(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]>) -> Option<Solution> {
     let context = attempt.context;
     let robot = context.robot();
-    if robot.dof() < POSE || robot.solves_at_once() != Some(true) || robot.family(pose).is_some() {
+    if robot.dof() < POSE || robot.solves_at_once() != Some(true) {
         return None;
+    }
+    if let Some(family) = robot.family(pose) {
+        return FamilySearch::new(context, &family, start).at_first_values(attempt);
     }
     let mut likely = ArmConfigurations::none();
     robot.likely_branches(pose, &mut likely);
