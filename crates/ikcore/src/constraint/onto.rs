@@ -52,7 +52,7 @@ impl<'a> Onto<'a> {
         let Self { robot, tasks, targets, lower, upper, linearized } = self;
         let aims = Aims { tasks, targets };
         let n = q.len();
-        linearized.project(q, [lower, upper], STEPS, |q, linearized| {
+        linearized.project(q, [&lower[..], &upper[..]], STEPS, |q, linearized| {
             let assessment = aims.linearize(robot, q, linearized, |_| ());
             (!assessment.score.solved).then(|| linearized.least_damping(n))
         })
