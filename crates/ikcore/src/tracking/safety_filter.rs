@@ -206,7 +206,15 @@ impl SafetyFilter {
         if is_held || self.holds_goal.is_some() {
             self.progress.note_held();
         }
-        FilterOutcome { changed: *q != wanted, held_by: is_held.then(|| self.in_the_way.holder()) }
+        FilterOutcome { changed: *q != wanted, held_by: is_held.then(|| self.holder()) }
+    }
+
+    /// What holds the arm back. One that rests because it came no nearer is held by what keeps its goal from the target.
+    fn holder(&self) -> Holder {
+        if self.in_the_way.any() {
+            return self.in_the_way.holder();
+        }
+        self.holds_goal.unwrap_or(if self.around.is_some() { Holder::Body } else { Holder::Constraint })
     }
 
     /// Changes the command `q` to one that keeps the arm clear and all constraints, for joints that stop one by one. Returns whether

@@ -75,7 +75,9 @@ impl Step {
             _ => "no nearer than in the tick before",
         };
         let known = match self.away {
-            Some(Away { way: Way::Blocked, .. }) => format!("; {}", Away::NO_WAY),
+            Some(Away { way: Way::Blocked, .. }) if self.status != Status::HeldByConstraint => {
+                format!("; {}", Away::NO_WAY)
+            }
             _ => String::new(),
         };
         message![format!("{how}, {error} away{limits}{known}: "), advice]
