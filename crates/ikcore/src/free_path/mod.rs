@@ -12,7 +12,8 @@
 //! | [`certified_timing`] | timings of a path that keep the margin for certain |
 //! | [`no_way`] | why there is no clear motion |
 //! | [`moving_start`] | motions that begin at a velocity |
-//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect, half of whose attempts grow from little-tried nodes |
+//! | [`joint_groups`] | joints that move independently of each other, such as each arm of two |
 //! | [`shortening`] | shortcuts |
 //! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
 
@@ -22,6 +23,7 @@ mod certified_timing;
 mod configuration_tree;
 mod end_pair;
 mod improvement;
+mod joint_groups;
 mod least_displacement;
 mod minmax_planner;
 mod moving_start;

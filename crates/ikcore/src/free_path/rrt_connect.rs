@@ -1,7 +1,13 @@
 //! RRT-Connect (Kuffner and LaValle, ICRA 2000): two trees grow towards each other until they form a clear path through joint
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
+//!
+//! A tree whose nodes are all in narrow places hardly grows towards samples of the whole space: nearly every line is blocked. Half
+//! of the attempts therefore start from a node that few attempts started from, as in expansive-space trees (Hsu, Latombe and
+//! Motwani, ICRA 1997), in a random direction by a random length, and move all joints or one group of them: an arm of two can
+//! leave a shelf while the other stays.
 
 use super::configuration_tree::ConfigurationTree;
+use super::joint_groups::joint_groups;
 use crate::math::vector::write_between;
 use crate::objective::Point;
 use crate::obstacle::{SampledLine, Scene};
@@ -22,8 +28,10 @@ pub(super) enum Connection {
     Interrupted,
 }
 
-/// Length of an edge while a tree grows (rad, m).
+/// Length of an edge while a tree grows towards a sample (rad, m).
 const STRIDE: f64 = 1.0;
+/// Largest length of an edge in a random direction (rad, m).
+const FARTHEST: f64 = 3.0;
 
 /// Budget of node comparisons per configuration of the budget: about as much work again.
 const COMPARISONS: usize = 100;
@@ -55,6 +63,8 @@ pub(super) struct TreeSearch<'a> {
     pub gap: f64,
     /// Nodes compared with a goal to find the nearest.
     compared: usize,
+    /// Sets of joints that an edge in a random direction moves: all joints, then each independent group.
+    moves: Vec<Vec<usize>>,
 }
 
 impl<'a> TreeSearch<'a> {
@@ -65,7 +75,11 @@ impl<'a> TreeSearch<'a> {
         budget: usize,
         deadline: Deadline,
     ) -> Self {
-        Self { check: SampledLine::new(scene, margin), ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+        let check = SampledLine::new(scene, margin);
+        let groups = Some(joint_groups(scene.robot())).filter(|groups| groups.len() > 1);
+        let all = (0..ranges.len()).collect();
+        let moves = [all].into_iter().chain(groups.into_iter().flatten()).collect();
+        Self { check, ranges, budget, deadline, gap: f64::INFINITY, compared: 0, moves }
     }
 
     /// Ranges of the joints of `robot` for a search between configurations `ends`: that of a joint without limits contains all of
@@ -99,10 +113,10 @@ impl<'a> TreeSearch<'a> {
     /// Searches for a path between clear ends.
     pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
         let n = route.start.len();
-        let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);
-        let mut other = ConfigurationTree::rooted(&self.ranges, route.ends.iter().map(Vec::as_slice));
+        let mut growing = ConfigurationTree::rooted(n, [route.start]);
+        let mut other = ConfigurationTree::rooted(n, route.ends.iter().map(Vec::as_slice));
         let mut from_start = true;
-        let (mut sample, mut next) = (vec![0.0; n], vec![0.0; n]);
+        let mut next = vec![0.0; n];
         while !self.is_spent() {
             if !monitor.keep_going() {
                 return Connection::Interrupted;
@@ -112,19 +126,12 @@ impl<'a> TreeSearch<'a> {
                 std::mem::swap(&mut growing, &mut other);
                 from_start = !from_start;
             }
-            self.draw(route, rng, &mut sample);
-            self.compared += growing.len();
-            let Some((near, distance)) = growing.nearest(&sample) else { break };
-            if !growing.is_in_domain(near, distance) {
-                continue;
-            }
-            step_towards(growing.node(near), &sample, STRIDE / distance, &mut next);
-            let grew = self.check.is_clear(growing.node(near), &next);
-            growing.note(near, grew);
-            if !grew {
-                continue;
-            }
-            let reached = growing.add(&next, Some(near));
+            let grown = if rng.uniform() < 0.5 {
+                self.grow_towards_sample(&mut growing, route, rng, &mut next)
+            } else {
+                self.grow_anywhere(&mut growing, route, rng, &mut next)
+            };
+            let Some(reached) = grown else { continue };
             if let Some(meeting) = self.reach(&mut other, &next) {
                 let (mut path, mut rest) = (growing.path_from_root(reached), other.path_from_root(meeting));
                 rest.reverse();
@@ -137,6 +144,46 @@ impl<'a> TreeSearch<'a> {
             }
         }
         Connection::NotFound
+    }
+
+    /// Grows `tree` by a stride from its nearest node towards a sample; writes the new configuration to `next`.
+    fn grow_towards_sample(
+        &mut self,
+        tree: &mut ConfigurationTree,
+        route: &Route,
+        rng: &mut LazyRng,
+        next: &mut [f64],
+    ) -> Option<usize> {
+        self.draw(route, rng, next);
+        self.compared += tree.len();
+        let (near, distance) = tree.nearest(next)?;
+        if distance > STRIDE {
+            let sample = Point::from_slice(next);
+            step_towards(tree.node(near), &sample, STRIDE / distance, next);
+        }
+        self.check.is_clear(tree.node(near), next).then(|| tree.add(next, Some(near)))
+    }
+
+    /// Grows `tree` from a node with few attempts, in a random direction; writes the new configuration to `next`.
+    fn grow_anywhere(
+        &mut self,
+        tree: &mut ConfigurationTree,
+        route: &Route,
+        rng: &mut LazyRng,
+        next: &mut [f64],
+    ) -> Option<usize> {
+        self.compared += SAMPLE;
+        let node = tree.little_tried(rng);
+        next.copy_from_slice(tree.node(node));
+        let moved = &self.moves[rng.below(self.moves.len())];
+        let length = FARTHEST * rng.uniform();
+        let mut direction = Point::from_elem(0.0, moved.len());
+        rng.direction(&mut direction);
+        for (j, part) in moved.iter().zip(&direction) {
+            let (lower, upper) = self.ranges[*j];
+            next[*j] = (next[*j] + length * part).max(lower).min(upper);
+        }
+        ((route.is_promising)(next) && self.check.is_clear(tree.node(node), next)).then(|| tree.add(next, Some(node)))
     }
 
     /// Draws a configuration that is promising, if possible.
