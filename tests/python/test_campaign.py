@@ -24,6 +24,7 @@ CASES = {
     "dead_ends": 6,
     "clear_plans": 2,
     "held_arms": 6,
+    "two_arm_plans": 4,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
@@ -173,6 +174,11 @@ SPOILED = {
         "a solution is called clear",
     ),
     "clear_plans": (
+        "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
+        "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
+        "the plan misses its ends",
+    ),
+    "two_arm_plans": (
         "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
         "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
         "the plan misses its ends",

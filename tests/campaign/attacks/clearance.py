@@ -8,7 +8,7 @@ import numpy as np
 
 import beetle_ik as bik
 
-from .. import shapes
+from .. import arms, shapes
 from ..attack import Attack, BrokenError, Case
 from .motion import check_rates
 
@@ -114,8 +114,8 @@ class Clear(Attack):
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         """Hard scenes are close to the arm, and its configurations at limits."""
-        name = str(random.choice(list(ROBOTS)))
-        robot = self.robot(name)
+        made = self.drawn(random)
+        robot = eval(made, {"bik": bik})
         tried = robot.random_configurations(40, seed=int(random.integers(2**31)))
         ends = tried[np.argsort(-bik.obstacles.clearance(robot, tried))[:4]]
         if hard:  # the second one is at a limit
@@ -124,32 +124,30 @@ class Clear(Attack):
             ends[1] = ends[1] if bik.obstacles.clearance(robot, ends[1]) > 0.02 else before
         scene, alone = [], robot.with_collision_pairs([])
         for _ in range(int(random.integers(*self.things))):
-            link = robot.link_poses(ends[random.integers(4)])[random.integers(1, robot.dof + 1), :3, 3]
+            links = robot.all_link_poses(ends[random.integers(4)])
+            link = links[random.integers(1, len(links)), :3, 3]
             thing = shapes.shape(random, link + random.normal(0.0, 0.1 if hard else 0.3, 3), 0.25, hard=False)
             near = min(shapes.clearance(alone, q, shapes.pieces(thing)) for q in ends[:2])
             if near > 0.03 or random.random() < 0.1:
                 scene.append(thing)
         margin = random.choice([0.0, 0.001, 0.02])
         return {
-            "robot": name,
+            "robot": made,
             "ends": ends.tolist(),
             "scene": scene,
             "margin": float(margin),
             "seed": int(random.integers(2**31)),
         }
 
-    @staticmethod
-    def robot(name: str) -> bik.Robot:
-        """A named robot with capsules."""
-        return bik.Robot.named(name).with_capsules(radius=ROBOTS[name])
+    def drawn(self, random: np.random.Generator) -> str:
+        """The expression that makes a robot with capsules: a named one."""
+        name = str(random.choice(list(ROBOTS)))
+        return f"bik.Robot.named({name!r}).with_capsules(radius={ROBOTS[name]})"
 
     def made(self, case: Case) -> str:
         """The lines that make robot, configurations and scene."""
-        name, scene = case["robot"], "".join(f"    {shapes.written(thing)},\n" for thing in case["scene"])
-        return (
-            f"robot = bik.Robot.named({name!r}).with_capsules(radius={ROBOTS[name]})\n"
-            f"ends = np.array({case['ends']})\nscene = bik.Scene([\n{scene}])\n"
-        )
+        scene = "".join(f"    {shapes.written(thing)},\n" for thing in case["scene"])
+        return f"robot = {case['robot']}\nends = np.array({case['ends']})\nscene = bik.Scene([\n{scene}])\n"
 
     def check_clear(self, case: Case, robot: bik.Robot, q: np.ndarray, said: float, what: str) -> None:
         """Checks a configuration that is called clear."""
@@ -197,7 +195,7 @@ class ClearPlans(Clear):
         return (
             f"{self.made(case)}limits = bik.Limits(**{self.limits(case)})\n"
             f"given = dict(limits=limits, obstacles=scene, margin={case['margin']})\n"
-            "plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], **given)"
+            "plan = bik.plan_point_to_point(robot, start_q=ends[0], end_q=ends[1], end_turns='as_given', **given)"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -211,6 +209,24 @@ class ClearPlans(Clear):
         for q in motion.at(np.linspace(0.0, motion.duration, 150))[0]:
             self.check_clear(case, robot, q, -np.inf, "a plan")
         return 1
+
+
+class TwoArmPlans(ClearPlans):
+    name = "two_arm_plans"
+    promise = "A plan of two arms on a torso keeps its margin between the arms too"
+
+    def drawn(self, random: np.random.Generator) -> str:
+        """Two arms of three to seven joints each."""
+        torso, left, right = (arms.easy_arm(random, n) for n in (1, *random.integers(3, 8, 2)))
+        branches = {"l": [*torso, *left], "a": right}
+        tips = [f"{name}{len(joints)}" for name, joints in branches.items()]
+        capsules = [
+            (f"{name}{i}", (0.0, 0.0, 0.0), joint["xyz"], 0.02)
+            for name, joints in branches.items()
+            for i, joint in enumerate(joints)
+            if i > 0
+        ]
+        return f'bik.Robot.from_urdf("""{arms.urdf(*branches.values())}""", tip={tips}).with_capsules({capsules})'
 
 
 class ClearTicks(Clear):
@@ -250,4 +266,4 @@ class ClearTicks(Clear):
         return len(left["ways"])
 
 
-ATTACKS = [Distances(), AnySize(), ClearSolutions(), ClearPlans(), ClearTicks()]
+ATTACKS = [Distances(), AnySize(), ClearSolutions(), ClearPlans(), TwoArmPlans(), ClearTicks()]

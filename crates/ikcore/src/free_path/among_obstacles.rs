@@ -19,8 +19,8 @@ use crate::plan::{
 };
 use crate::solver::{Monitor, Status};
 
-/// Total number of configurations that all trees may examine: about half a second.
-const BUDGET: usize = 1_000_000;
+/// Number of configurations that all trees may examine in all, for each joint: a second or two of an arm in a narrow place.
+const BUDGET_PER_JOINT: usize = 150_000;
 /// Fewest collision-free pairs; below it more are sought ...
 const FEW_PAIRS: usize = 3;
 /// ... from this many random starts.
@@ -68,7 +68,7 @@ pub(super) fn plan(
     }
     open.extend(search.other_ways(&open));
     let limits = search.limits;
-    let budget = options.stop.map_or(BUDGET, |stop| stop.max_evaluations);
+    let budget = options.stop.map_or(BUDGET_PER_JOINT * search.robot.dof(), |stop| stop.max_evaluations);
     let most = most_kept(space, &open);
     let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =

@@ -1,12 +1,9 @@
 //! A tree of configurations, each joined to its parent by a clear straight line.
 
-/// Domain of a node that could not grow, relative to the diagonal of the joint ranges: only samples within it let the
-/// node try again (dynamic domain: Yershova et al., ICRA 2005).
-const DOMAIN: f64 = 0.3;
-/// Factor of the domain after each success, and its inverse after each failure.
-const ADAPTION: f64 = 1.0 + 1e-4;
-/// The smallest domain, relative to the first.
-const SMALLEST_DOMAIN: f64 = 0.25;
+use crate::rng::LazyRng;
+
+/// Number of sums that a distance is split into: one would wait for each addition.
+const SUMS: usize = 4;
 
 /// The tree. Distances are Euclidean in rad and m.
 #[derive(Debug)]
@@ -15,17 +12,14 @@ pub(super) struct ConfigurationTree {
     /// The configurations, one after another.
     nodes: Vec<f64>,
     parents: Vec<Option<usize>>,
-    domains: Vec<f64>,
-    /// The domain after the first failure.
-    first_domain: f64,
+    /// Number of times that each node was picked by [`little_tried`](Self::little_tried).
+    tries: Vec<u32>,
 }
 
 impl ConfigurationTree {
-    /// Plants a tree with these roots between joint limits.
-    pub fn rooted<'q>(ranges: &[(f64, f64)], roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
-        let diagonal = ranges.iter().map(|(lower, upper)| (upper - lower) * (upper - lower)).sum::<f64>().sqrt();
-        let first_domain = DOMAIN * diagonal;
-        let mut tree = Self { joints: ranges.len(), nodes: vec![], parents: vec![], domains: vec![], first_domain };
+    /// Plants a tree of configurations of `joints` joints with these roots.
+    pub fn rooted<'q>(joints: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
+        let mut tree = Self { joints, nodes: vec![], parents: vec![], tries: vec![] };
         roots.into_iter().for_each(|root| _ = tree.add(root, None));
         tree
     }
@@ -44,31 +38,23 @@ impl ConfigurationTree {
     pub fn add(&mut self, q: &[f64], parent: Option<usize>) -> usize {
         self.nodes.extend_from_slice(q);
         self.parents.push(parent);
-        self.domains.push(f64::INFINITY);
+        self.tries.push(0);
         self.len() - 1
     }
 
     /// The nearest node to `q`, and its distance; `None` in an empty tree.
     pub fn nearest(&self, q: &[f64]) -> Option<(usize, f64)> {
-        let squared = |node: &[f64]| node.iter().zip(q).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-        let distances = self.nodes.chunks_exact(self.joints).map(squared).enumerate();
+        let distances = self.nodes.chunks_exact(self.joints).map(|node| squared_distance(node, q)).enumerate();
         let nearest = distances.min_by(|one, other| one.1.total_cmp(&other.1));
         nearest.map(|(node, squared)| (node, squared.sqrt()))
     }
 
-    /// Whether a sample at `distance` is worth growing towards.
-    pub fn is_in_domain(&self, node: usize, distance: f64) -> bool {
-        distance <= self.domains[node]
-    }
-
-    /// Notes whether a node grew.
-    pub fn note(&mut self, node: usize, grew: bool) {
-        let domain = &mut self.domains[node];
-        *domain = match (grew, domain.is_finite()) {
-            (true, _) => *domain * ADAPTION,
-            (false, true) => (*domain / ADAPTION).max(SMALLEST_DOMAIN * self.first_domain),
-            (false, false) => self.first_domain,
-        };
+    /// Picks the less often picked of two random nodes.
+    pub fn little_tried(&mut self, rng: &mut LazyRng) -> usize {
+        let [one, other] = rng.pair_below(self.len());
+        let node = if self.tries[one] <= self.tries[other] { one } else { other };
+        self.tries[node] += 1;
+        node
     }
 
     /// The configurations from the root to a node.
@@ -77,5 +63,46 @@ impl ConfigurationTree {
         let mut path: Vec<Vec<f64>> = line.map(|node| self.node(node).to_vec()).collect();
         path.reverse();
         path
+    }
+}
+
+/// The squared distance of two configurations.
+fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
+    let mut sums = [0.0; SUMS];
+    let (one, other) = (one.chunks(SUMS), other.chunks(SUMS));
+    for (a, b) in one.zip(other) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    sums.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+
+    #[test]
+    fn no_node_is_tried_much_less_often_than_others() {
+        let mut tree = ConfigurationTree::rooted(1, (0..50).map(|_| &[0.0][..]));
+        let mut rng = rng::stream(1, 0);
+        (0..5000).for_each(|_| _ = tree.little_tried(&mut rng));
+        assert!(tree.tries.iter().all(|tries| (90..=110).contains(tries)), "{:?}", tree.tries);
+    }
+
+    #[test]
+    fn the_nearest_node_is_that_of_the_least_distance() {
+        let mut rng = rng::stream(2, 0);
+        for joints in 1..=17 {
+            let mut drawn = vec![0.0; 21 * joints];
+            rng.symmetric(&mut drawn);
+            let (q, nodes) = drawn.split_at(joints);
+            let tree = ConfigurationTree::rooted(joints, nodes.chunks_exact(joints));
+            let distance = |node: &[f64]| node.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            let (nearest, least) = tree.nearest(q).unwrap();
+            assert!((distance(tree.node(nearest)) - least).abs() < 1e-14);
+            assert!((0..tree.len()).all(|node| distance(tree.node(node)) > least - 1e-14));
+        }
     }
 }

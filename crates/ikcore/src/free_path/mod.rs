@@ -13,7 +13,8 @@
 //! | [`no_way`] | why there is no clear motion |
 //! | [`moving_start`] | motions that begin at a velocity |
 //! | [`line_check`] | whether a straight line can be part of a path |
-//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect |
+//! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect, half of whose attempts grow from little-tried nodes |
+//! | [`joint_groups`] | joints that move independently of each other, such as each arm of two |
 //! | [`narrow_way`] | motions within constraints that leave straight lines no room |
 //! | [`shortening`] | shortcuts |
 //! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
@@ -24,6 +25,7 @@ mod certified_timing;
 mod configuration_tree;
 mod end_pair;
 mod improvement;
+mod joint_groups;
 mod least_displacement;
 mod line_check;
 mod minmax_planner;

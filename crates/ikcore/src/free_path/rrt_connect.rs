@@ -1,7 +1,13 @@
 //! RRT-Connect (Kuffner and LaValle, ICRA 2000): two trees grow towards each other until they form a clear path through joint
 //! space. Edges are examined at closely spaced configurations; what becomes of the path is certified afterwards.
+//!
+//! A tree whose nodes are all in narrow places hardly grows towards samples of the whole space: nearly every line is blocked. Half
+//! of the attempts therefore start from a node that few attempts started from, as in expansive-space trees (Hsu, Latombe and
+//! Motwani, ICRA 1997), in a random direction by a random length, and move all joints or one group of them: an arm of two can
+//! leave a shelf while the other stays.
 
 use super::configuration_tree::ConfigurationTree;
+use super::joint_groups::joint_groups;
 use super::line_check::LineCheck;
 use crate::math::vector::{distance, write_between};
 use crate::objective::Point;
@@ -23,10 +29,12 @@ pub(super) enum Connection {
     Interrupted,
 }
 
-/// Length of an edge while a tree grows (rad, m).
+/// Length of an edge while a tree grows towards a sample (rad, m).
 const STRIDE: f64 = 1.0;
-/// The same within constraints, which long lines leave.
-const STRIDE_WITHIN: f64 = 0.5;
+/// Largest length of an edge in a random direction (rad, m).
+const FARTHEST: f64 = 3.0;
+/// Fraction of both within constraints, which long lines leave.
+const WITHIN: f64 = 0.5;
 /// Fraction of a stride by which one at least brings a tree nearer to its goal.
 const LEAST_GAIN: f64 = 0.1;
 
@@ -62,6 +70,8 @@ pub(super) struct TreeSearch<'a> {
     pub gap: f64,
     /// Nodes compared with a goal to find the nearest.
     compared: usize,
+    /// Sets of joints that an edge in a random direction moves: all joints, then each independent group.
+    moves: Vec<Vec<usize>>,
 }
 
 impl<'a> TreeSearch<'a> {
@@ -73,7 +83,10 @@ impl<'a> TreeSearch<'a> {
         deadline: Deadline,
     ) -> Self {
         let check = LineCheck { clear: SampledLine::new(scene, margin), kept: None };
-        Self { check, ranges, budget, deadline, gap: f64::INFINITY, compared: 0 }
+        let groups = Some(joint_groups(scene.robot())).filter(|groups| groups.len() > 1);
+        let all = (0..ranges.len()).collect();
+        let moves = [all].into_iter().chain(groups.into_iter().flatten()).collect();
+        Self { check, ranges, budget, deadline, gap: f64::INFINITY, compared: 0, moves }
     }
 
     /// Ranges of the joints of `robot` for a search between configurations `ends`: that of a joint without limits contains all of
@@ -107,10 +120,10 @@ impl<'a> TreeSearch<'a> {
     /// Searches for a path between clear ends.
     pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
         let n = route.start.len();
-        let mut growing = ConfigurationTree::rooted(&self.ranges, [route.start]);
-        let mut other = ConfigurationTree::rooted(&self.ranges, route.ends.iter().map(Vec::as_slice));
+        let mut growing = ConfigurationTree::rooted(n, [route.start]);
+        let mut other = ConfigurationTree::rooted(n, route.ends.iter().map(Vec::as_slice));
         let mut from_start = true;
-        let (mut sample, mut next) = (vec![0.0; n], vec![0.0; n]);
+        let mut next = vec![0.0; n];
         while !self.is_spent() {
             if !monitor.keep_going() {
                 return Connection::Interrupted;
@@ -120,23 +133,12 @@ impl<'a> TreeSearch<'a> {
                 std::mem::swap(&mut growing, &mut other);
                 from_start = !from_start;
             }
-            self.draw(route, rng, &mut sample);
-            if !self.check.bring(&mut sample) {
-                self.compared += PROJECTION;
-                continue;
-            }
-            self.compared += growing.len();
-            let Some((near, distance)) = growing.nearest(&sample) else { break };
-            if !growing.is_in_domain(near, distance) {
-                continue;
-            }
-            step_towards(growing.node(near), &sample, self.stride() / distance, &mut next);
-            let grew = self.check.bring(&mut next) && self.check.is_clear(growing.node(near), &next);
-            growing.note(near, grew);
-            if !grew {
-                continue;
-            }
-            let reached = growing.add(&next, Some(near));
+            let grown = if rng.uniform() < 0.5 {
+                self.grow_towards_sample(&mut growing, route, rng, &mut next)
+            } else {
+                self.grow_anywhere(&mut growing, route, rng, &mut next)
+            };
+            let Some(reached) = grown else { continue };
             if let Some(meeting) = self.reach(&mut other, &next) {
                 let (mut path, mut rest) = (growing.path_from_root(reached), other.path_from_root(meeting));
                 rest.reverse();
@@ -151,9 +153,57 @@ impl<'a> TreeSearch<'a> {
         Connection::NotFound
     }
 
-    /// Length of an edge (rad, m).
-    fn stride(&self) -> f64 {
-        if self.check.kept.is_some() { STRIDE_WITHIN } else { STRIDE }
+    /// A length of an edge (rad, m), shorter within constraints.
+    fn shortened(&self, length: f64) -> f64 {
+        if self.check.kept.is_some() { WITHIN * length } else { length }
+    }
+
+    /// Grows `tree` by a stride from its nearest node towards a sample; writes the new configuration to `next`.
+    fn grow_towards_sample(
+        &mut self,
+        tree: &mut ConfigurationTree,
+        route: &Route,
+        rng: &mut LazyRng,
+        next: &mut [f64],
+    ) -> Option<usize> {
+        self.draw(route, rng, next);
+        if !self.check.bring(next) {
+            self.compared += PROJECTION;
+            return None;
+        }
+        self.compared += tree.len();
+        let (near, distance) = tree.nearest(next)?;
+        let stride = self.shortened(STRIDE);
+        if distance > stride {
+            let sample = Point::from_slice(next);
+            step_towards(tree.node(near), &sample, stride / distance, next);
+        }
+        let is_open = self.check.bring(next) && self.check.is_clear(tree.node(near), next);
+        is_open.then(|| tree.add(next, Some(near)))
+    }
+
+    /// Grows `tree` from a node with few attempts, in a random direction; writes the new configuration to `next`.
+    fn grow_anywhere(
+        &mut self,
+        tree: &mut ConfigurationTree,
+        route: &Route,
+        rng: &mut LazyRng,
+        next: &mut [f64],
+    ) -> Option<usize> {
+        self.compared += SAMPLE;
+        let node = tree.little_tried(rng);
+        next.copy_from_slice(tree.node(node));
+        let moved = &self.moves[rng.below(self.moves.len())];
+        let length = self.shortened(FARTHEST) * rng.uniform();
+        let mut direction = Point::from_elem(0.0, moved.len());
+        rng.direction(&mut direction);
+        for (j, part) in moved.iter().zip(&direction) {
+            let (lower, upper) = self.ranges[*j];
+            next[*j] = (next[*j] + length * part).max(lower).min(upper);
+        }
+        let is_open =
+            (route.is_promising)(next) && self.check.bring(next) && self.check.is_clear(tree.node(node), next);
+        is_open.then(|| tree.add(next, Some(node)))
     }
 
     /// Draws a configuration that is promising, if possible.
@@ -174,7 +224,7 @@ impl<'a> TreeSearch<'a> {
         self.compared += tree.len();
         let (mut at, mut left) = tree.nearest(goal)?;
         let mut next = goal.to_vec();
-        let stride = self.stride();
+        let stride = self.shortened(STRIDE);
         while left > stride {
             step_towards(tree.node(at), goal, stride / left, &mut next);
             let is_open = !self.is_spent() && self.check.bring(&mut next) && self.check.is_clear(tree.node(at), &next);
