@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn a_matrix_of_three_decimals_is_taken_as_the_nearest_rotation() {
         for (angle, decimals) in [(0.3, 1e3_f64), (1.1, 1e3), (2.7, 1e4), (-0.9, 1e5)] {
-            let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, angle, -0.4));
+            let axis = Unit::new_normalize(Vector3::new(1.0, angle, -0.4));
             let exact = Rotation3::from_axis_angle(&axis, angle).into_inner();
             let rounded = exact.map(|entry| (entry * decimals).round() / decimals);
             let taken = from_rotation_matrix("R", rounded, [0.0; 3]).unwrap().rotation.into_inner();
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_drifted_rotation_is_taken_as_the_nearest_one() {
-        let axis = nalgebra::Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
+        let axis = Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
         let exact = Rotation3::from_axis_angle(&axis, 1.2).into_inner();
         let strain = Matrix3::new(0.03, 0.01, -0.02, 0.0, -0.05, 0.04, 0.01, 0.0, 0.06);
         for size in [1e-3, 0.1, 1.0] {
