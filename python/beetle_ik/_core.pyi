@@ -3772,6 +3772,8 @@ def plan_along_path(
         task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
             `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
             whole pose.
+        keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
+            path leaves free stays upright.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
@@ -3795,8 +3797,8 @@ def plan_along_path(
         IN_COLLISION, and the message names the place on the path, the two bodies and the depth.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
-            a robot without bodies.
+        InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
+            a robot without bodies, or a start_q at which `keep` does not hold.
         LimitError: limits that contradict each other; a start farther outside them than start_slack.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
