@@ -31,6 +31,7 @@ from ._core import (
     InfeasibleError,
     InvalidInputError,
     JacobianTranspose,
+    Keep,
     KinematicPlant,
     LevenbergMarquardt,
     LimitError,
@@ -75,6 +76,7 @@ from ._core import (
     time_optimal,
     track,
     track_model_free,
+    upright,
 )
 from .scenes import Scene
 
@@ -103,6 +105,7 @@ __all__ = [
     "InvalidInputError",
     "InverseReachabilityMap",
     "JacobianTranspose",
+    "Keep",
     "KinematicPlant",
     "LevenbergMarquardt",
     "LimitError",
@@ -161,6 +164,7 @@ __all__ = [
     "time_optimal",
     "track",
     "track_model_free",
+    "upright",
     "view",
     "vision",
 ]

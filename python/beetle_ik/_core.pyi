@@ -34,6 +34,7 @@ _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
 _Tolerance: TypeAlias = float | Mapping[str, float] | Mapping[_TipKey, float]
+_Keeps: TypeAlias = Keep | list[Keep] | tuple[Keep, ...] | None
 _Progress: TypeAlias = bool | Callable[[int, int], object] | None  # called with (done, total)
 
 @type_check_only
@@ -688,6 +689,7 @@ class Status(IntEnum):
     - `HELD_BY_OBSTACLE`: A step of a track in which obstacles, or the robot's own links, keep the tip from the target; the arm keeps its margin.
     - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
+    - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
     """
 
     SOLVED = 0
@@ -708,6 +710,7 @@ class Status(IntEnum):
     HELD_BY_OBSTACLE = 15
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
+    HELD_BY_CONSTRAINT = 18
 
 @final
 class APPS:
@@ -1598,6 +1601,7 @@ def solve(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -1631,6 +1635,11 @@ def solve(
             search
             ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
+        joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
+            (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+            it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
+            its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
+            1e8. It needs a start, and takes no goals. None: all joints cost the same.
         limits: position limits; None: the robot's.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
@@ -2185,6 +2194,7 @@ def solve_batch(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -2214,7 +2224,7 @@ def solve_batch(
             Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
-        goals, prefer: as for `solve`.
+        goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
         limits: position limits; None: the robot's.
         obstacles, margin, self_collision: as for `solve`.
         stop: budgets of each target; None: as for `solve`.
@@ -2586,11 +2596,13 @@ def track(
     solver: _Solver | WeightedPseudoInverse | None = None,
     limits: Limits | None = None,
     goals: _Goals = None,
+    joint_weights: ArrayLike | None = None,
     position_tolerance: _Tolerance = 1e-6,
     rotation_tolerance: _Tolerance = 1e-6,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
     self_collision: bool | None = None,
+    keep: Keep | Sequence[Keep] | None = None,
     seed: int = 0,
     limit_at: Literal["interval", "start"] = "interval",
     ease: bool = False,
@@ -2620,6 +2632,9 @@ def track(
             `Limits(velocity=np.inf)` says that jumps are meant.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
+        joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
+            that a base of weight 100 stays where the arm can do it, and still moves where only it can. Only ratios count, up to
+            1e8. They need the model-based rule. None: all joints cost the same.
         position_tolerance: error band of positions (m); for several tips also a dict.
         rotation_tolerance: error band of orientations (rad); for several tips also a dict.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
@@ -2628,6 +2643,8 @@ def track(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
             several tips all of whose collision shapes are known.
+        keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+            each. The arm goes as near to the path as that allows. None: nothing.
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
             at its "start".
@@ -2643,10 +2660,11 @@ def track(
         A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 
     Raises:
-        InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
+        InvalidInputError: wrong shape, NaN, a time step that is not positive, a joint that no limit slows down, or a start at which
+            something in keep does not hold.
         LimitError: a start farther outside its limits than start_slack, or a negative limit.
         UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
-            region; position, acceleration or jerk limits that vary in time, among obstacles.
+            region; position, acceleration or jerk limits that vary in time, among obstacles or with keep.
 
     For example:
 
@@ -2818,11 +2836,12 @@ class Tracker:
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
             sample them.
-        goals: as in `track`.
+        goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
         obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
             ticks: `tracker.obstacles = [...]`.
+        keep: a `Keep`, for example from `upright`, or several, as in `track`. The stop after each command keeps them too.
         seed: seed of the random draws.
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
@@ -2853,11 +2872,13 @@ class Tracker:
         solver: _Solver | WeightedPseudoInverse | None = None,
         limits: Limits | None = None,
         goals: _Goals = None,
+        joint_weights: ArrayLike | None = None,
         position_tolerance: _Tolerance = 1e-6,
         rotation_tolerance: _Tolerance = 1e-6,
         obstacles: Iterable[Obstacle | Moving] | None = None,
         margin: float | None = None,
         self_collision: bool | None = None,
+        keep: Keep | Sequence[Keep] | None = None,
         seed: int = 0,
         limit_at: Literal["interval", "start"] = "interval",
         target_filter: LowPass | OneEuro | None = None,
@@ -2899,6 +2920,9 @@ class Tracker:
     @property
     def start_outside(self) -> list[tuple[str, float, float]]:
         """Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside."""
+    @property
+    def keep(self) -> tuple[Keep, ...]:
+        """What holds at every instant, a tuple of `Keep`."""
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
         """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
@@ -2943,8 +2967,8 @@ class Step:
     @property
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
-        HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; IMPROVED if nearer than in the previous step;
-        otherwise CAPPED.
+        HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
     @property
     def message(self) -> str:
@@ -3349,6 +3373,63 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 # --- planning -----------------------------------------------------------------------------------
 
+@final
+class Keep:
+    """What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
+
+    Args:
+        target: pose (4, 4) or position (3,) (m); or a dict from tips to targets, as for `solve`: the key ("left", "right") is the pose
+            of the second tip in the frame of the first.
+        task: part of the target that counts, one of `tasks`, with its tolerance: components without one are within 1e-6 m or rad, those
+            with an infinite one, or of weight 0, are free. None: all of the target, within 1e-6.
+
+    Raises:
+        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep.
+
+    For example, a hand that stays within 1 cm of the plane z = 0.3 m:
+
+        >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[np.inf, np.inf, 0.01]))
+    """
+
+    def __new__(cls, target: _Targets, task: Task | None = None) -> Keep: ...
+    @property
+    def target(self) -> Any:
+        """The target: a pose (4, 4), a position (3,) (m), or a dict of them by tip."""
+    @property
+    def task(self) -> Task | None:
+        """The part of the target that counts; None: all of it."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+def upright(
+    robot: Robot,
+    *,
+    axis: ArrayLike = (0, 0, 1),
+    direction: ArrayLike = (0, 0, -1),
+    tilt: float = 0.1,
+    tip: str | None = None,
+) -> Keep:
+    """Keeps an axis of the tip within an angle of a direction all the way, such as a cup that must not spill.
+
+    Args:
+        robot: the arm.
+        axis: (3,), axis of the tip, in its own frame, of any length but zero.
+        direction: (3,), where the axis points, in the frame of the base; by default down, as for a hand that hangs.
+        tilt: largest angle between them (rad).
+        tip: name of the tip of a robot with several; None: its only one.
+
+    Returns:
+        A `Keep`, for `keep=` of `plan_point_to_point` and others.
+
+    Raises:
+        InvalidInputError: an axis or a direction of length zero; a tilt that is not positive, or beyond pi; no tip of several.
+        UnknownNameError: a tip that the robot does not have.
+
+    For example:
+
+        >>> arm = bik.Robot.named("panda")
+        >>> keep = bik.upright(arm, tilt=np.radians(15))
+    """
 def plan_point_to_point(
     robot: Robot,
     start: _Pose | None = None,
@@ -3363,6 +3444,7 @@ def plan_point_to_point(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3393,6 +3475,8 @@ def plan_point_to_point(
         free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
             bodies come nearer than at the start; see `Plan.freed`.
         task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
+        keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+            not sampled; `Plan.kept` has the largest errors.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -3409,7 +3493,7 @@ def plan_point_to_point(
 
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
-            only if none can be reached.
+            only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
         LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
             joint and the remedy).
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
@@ -3617,6 +3701,7 @@ def plan_batch(
     retreat: float | StraightLine | None = None,
     free_start: bool = False,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["minmax", "tpbso"] | TPBSO = "minmax",
     objective: Literal["time", "joint_travel", "tip_travel"] = "time",
@@ -3636,7 +3721,7 @@ def plan_batch(
             others. The arguments of a problem override the common ones.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         progress: True shows a progress bar; a callable is called with (done, total).
-        approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+        approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
             `plan_point_to_point`, for all problems.
 
     Returns:
@@ -3800,6 +3885,12 @@ class Plan:
         given) (rad).
         """
     @property
+    def kept(self) -> list[tuple[Keep, _Array]]:
+        """What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+        the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
+        at most a hundredth of the tolerance too large, computed at the first access.
+        """
+    @property
     def freed(self) -> tuple[float, float] | None:
         """Escape from a start nearer than the margin, with `free_start=True`: the smallest distance at the start (m), and
         the time (s) from which on the margin is kept; None if the start was clear.
@@ -3828,7 +3919,8 @@ class Plan:
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
     def retime(self, limits: Limits) -> Plan:
-        """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+        """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
+        the plan keeps on the way, which is certified again.
 
         A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
         a whole and passes exactly the same configurations.
@@ -3839,7 +3931,7 @@ class Plan:
         Raises:
             TypeError: limits that are no `Limits`.
             InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
-                acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
+                acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
 

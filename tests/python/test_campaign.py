@@ -23,6 +23,7 @@ CASES = {
     "clear_ticks": 1,
     "dead_ends": 6,
     "clear_plans": 2,
+    "held_arms": 6,
     "two_arm_plans": 4,
     "time_optimal": 3,
     "out_of_reach": 6,
@@ -61,6 +62,7 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
 SPOILED = {
+    "joint_weights": ("solution = Changed(solution, q=solution.q + 0.02)", "solved, but not within the tolerance"),
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),
     "two_hands": ("solution = Changed(solution, q=solution.q + 1e-4)", "position_error is not the error"),
@@ -114,6 +116,10 @@ SPOILED = {
         "away += 0.1",
         "the arm stays away from its target",
     ),
+    "held_arms": (
+        "rates[-1], statuses[-1], way_back = 0.01, bik.Status.CAPPED, 0",
+        "a held arm moves on",
+    ),
     "tracker_lives": (
         "log += [('q', tracker.q + 1.0)]",
         "a command is outside the position limits",
@@ -138,6 +144,14 @@ SPOILED = {
         "moved = plan.trajectory.coefficients + 1e-4 * np.eye(1, plan.trajectory.coefficients.shape[2])\n"
         "plan = Changed(plan, trajectory=bik.Trajectory(plan.trajectory.time, moved))",
         "the plan misses its ends",
+    ),
+    "tracker_keeps": (
+        "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
+        "what is kept does not hold",
+    ),
+    "kept_motions": (
+        "told = [0.0 * each - 1.0 for each in told]",
+        "the largest error is more than told",
     ),
     "looser_paths": (
         "plans += [(False, inf, '')]",

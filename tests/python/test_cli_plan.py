@@ -67,3 +67,55 @@ def test_a_start_in_a_cloud_of_a_scene_names_the_remedy(scene: Path) -> None:
     assert refused.stderr.strip().endswith(
         "the robot's own points may be in the cloud, and PointCloud.without_robot in Python takes them out"
     )
+
+
+CUP = ["--start-q=0,-1.5,1.5,-90deg,-90deg,0", "--end-q=1.2,-1.2,1.2,-90deg,-90deg,0"]
+
+
+def test_a_tilt_is_kept_and_told() -> None:
+    arm = bik.Robot.named("ur5e")
+    for options, most in ((["--tilt", "10deg"], np.radians(10)), (["--tilt", "0.2", "--up", "-z"], 0.2)):
+        done = plan("ur5e", *CUP, *options, "--json")
+        answer = json.loads(done.stdout)
+        assert done.exit_code == 0
+        z = arm.fk(answer["end_q"])[:3, 2]
+        assert np.arctan2(np.hypot(z[0], z[1]), -z[2]) <= answer["tilt"] <= most
+    assert "largest tilt [rad]" in plan("ur5e", *CUP, "--tilt", "10deg").stdout
+    assert json.loads(plan("ur5e", *CUP, "--json").stdout)["tilt"] is None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--up", "z"], "--up names the axis that --tilt keeps vertical: give --tilt too"),
+        (["--tilt", "0"], "--tilt must be positive, got 0.0"),
+        (["--tilt", "ten"], "--tilt: 'ten' is not a number"),
+        (
+            ["--tilt", "200deg"],
+            "--tilt must be at most pi, at which any axis is allowed, got 3.490658503988659; 90deg is 90 degrees",
+        ),
+        (["--tilt", "10deg", "--up", "w"], "--up: expected x, y, z, -x, -y, -z or X,Y,Z, got 'w'"),
+        (["--tilt", "10deg", "--up", "0,1"], "--up: expected 3 numbers separated by commas, got 2 in '0,1'"),
+        (["--tilt", "10deg", "--up", "0,0,0"], "the length of --up must be positive, got 0.0"),
+        (
+            ["--tilt", "10deg", "--up", "z"],
+            "start: what is to be kept on the way does not hold there: tilt 3.142 rad of at most 0.1745",
+        ),
+        (
+            ["--tilt", "10deg", "--method", "tpbso"],
+            "--tilt is held by --method minmax: --method tpbso checks nothing on the way",
+        ),
+    ],
+)  # fmt: skip
+def test_a_wrong_tilt_is_refused(options: list[str], message: str) -> None:
+    ends = ["--start-q=0,-90deg,90deg,-90deg,-90deg,0", CUP[1]]
+    done = plan("ur5e", *ends, *options)
+    assert (done.exit_code, done.stderr.strip()) == (2, f"Error: {message}")
+
+
+def test_the_position_of_an_end_may_come_first() -> None:
+    ends = ["--start-q=0,0.5,0.5,0.5,0.5", "--end", "1.5,1.0,0,0,0,3"]
+    free = plan("planar5", *ends, "--first", "position", "--json")
+    assert free.exit_code == 0, free.output
+    end = json.loads(free.stdout)["end_q"]
+    np.testing.assert_allclose(bik.Robot.named("planar5").fk(end)[:3, 3], [1.5, 1.0, 0.0], atol=1e-5)

@@ -259,7 +259,7 @@ SHORT: dict[str, str] = {
             "paths.hypotrochoid", "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box",
             "obstacles.Capsule", "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid",
             "obstacles.HalfSpace", "obstacles.Moving", "obstacles.Sphere",
-            "filters.LowPass", "filters.OneEuro", "StraightLine",
+            "filters.LowPass", "filters.OneEuro", "StraightLine", "Keep", "upright",
         ],
         CONSTANT,
     ),

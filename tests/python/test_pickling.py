@@ -337,7 +337,7 @@ def results() -> dict[str, object]:
         "track": bik.track(planar, circle, dt=0.1, limits=limits),
         "plan": bik.plan_point_to_point(
             planar.with_capsules(radius=0.05), start_q=[0.1, 0.2, 0.3], end_q=[0.5, 0.2, -0.3], limits=plane,
-            obstacles=[obstacle],
+            obstacles=[obstacle], keep=bik.Keep((0.0, 0.0, 0.0), bik.tasks.Position(tolerance=[9.0, 9.0, 1e-9])),
         ),
         "plan along": bik.plan_along_path(planar, [(1.5, 1.0, 0.0), (1.4, 1.2, 0.0)], limits=plane),
         "model free": bik.track_model_free(bik.KinematicPlant(planar), circle, [0.1, 0.2, 0.3], dt=0.1),

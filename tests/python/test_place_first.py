@@ -31,6 +31,13 @@ def test_the_place_is_met_and_the_turn_least(name: str) -> None:
         assert angle <= least_angle(robot, target, 6, seed=i) + 1e-3, (i, found.message)
 
 
+@pytest.mark.parametrize(("name", "most"), [("hobby", 12.0), ("off_axis", 24.0), ("four", 12.0)])
+def test_the_place_is_met_in_few_evaluations(name: str, most: float) -> None:
+    robot, random = ARMS[name], np.random.default_rng(3)
+    targets = [turned(robot.fk(q), random.normal(0.0, 0.3, 3)) for q in robot.random_configurations(100, seed=8)]
+    assert np.mean([bik.solve(robot, target).evaluations for target in targets]) < most
+
+
 def test_a_start_chooses_among_equal_branches() -> None:
     for q in HOBBY.random_configurations(20, seed=3):
         target = turned(HOBBY.fk(q), np.array([0.2, -0.1, 0.3]))
@@ -239,3 +246,12 @@ def test_joints_of_a_large_weight_stay() -> None:
         bik.goals.Posture(start[:3], weight=[1.0, -1.0, 1.0])
     with pytest.raises(bik.InvalidInputError, match=r"^weight of a goal of robot .*: expected 10 joints, got 2$"):
         bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=[1.0, 2.0])])
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "ur5e"])
+def test_most_poses_with_tolerances_are_met_by_a_branch(name: str) -> None:
+    robot = bik.Robot.named(name)
+    task = bik.tasks.Pose(tolerance=[0.001, 0.001, 0.001, 0.2, 0.2, 0.2])
+    found = [bik.solve(robot, robot.fk(q), task=task) for q in robot.random_configurations(50, seed=6)]
+    assert all(one.success for one in found)
+    assert sum(max(one.position_error, one.rotation_error) < 1e-8 for one in found) >= 40

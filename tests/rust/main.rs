@@ -109,9 +109,11 @@ mod tracking {
     mod clear;
     mod ease;
     mod jump;
+    mod keep;
     mod khan_2022;
     mod model_free;
     mod resolved_rate;
+    mod settling;
     mod streams;
     mod tips;
     mod track;

@@ -38,7 +38,7 @@ pub enum Error {
         got: usize,
     },
     /// A number is outside its allowed range.
-    #[error("{what} must be {requirement}, got {value}")]
+    #[error("{what} must be {requirement}, got {}", given(*.value))]
     OutOfRange {
         /// The name of the argument.
         what: Message,
@@ -170,7 +170,7 @@ pub enum Error {
         problem: String,
     },
     /// A lower limit above its upper limit.
-    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}{}", .time.map(|t| format!(" at t = {t} s")).unwrap_or_default())]
+    #[error("joint '{joint}': lower limit {} is above upper limit {}{}", given(*.lower), given(*.upper), .time.map(|t| format!(" at t = {t} s")).unwrap_or_default())]
     EmptyRange {
         /// The joint's name.
         joint: String,
@@ -182,7 +182,7 @@ pub enum Error {
         time: Option<f64>,
     },
     /// A configuration outside the position limits.
-    #[error("{what}: joint '{joint}' at {value} is outside its limits [{lower}, {upper}] {excess}")]
+    #[error("{what}: joint '{joint}' at {} is outside its limits [{}, {}] {excess}", given(*.value), given(*.lower), given(*.upper))]
     OutsideLimits {
         /// Name of the argument, for example "start".
         what: Message,
@@ -446,6 +446,12 @@ impl Error {
     pub(crate) fn out_of_range(what: impl Into<Message>, requirement: impl Into<Message>, value: f64) -> Self {
         Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
     }
+}
+
+/// Writes a number as it was given; a huge one with an exponent, not with hundreds of zeros.
+pub(crate) fn given(value: f64) -> String {
+    const HUGE: f64 = 1e16;
+    if value.is_finite() && value.abs() >= HUGE { format!("{value:e}") } else { value.to_string() }
 }
 
 /// Checks that every entry is finite; `name(i)` names the offending entry.

@@ -52,7 +52,7 @@
 //! | 3 | [`robot`] |
 //! | 4 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`units`], [`motion`], [`task`], [`solver`] |
-//! | 6 | [`load`], [`problem`], [`calibration`] |
+//! | 6 | [`load`], [`problem`], [`calibration`], [`constraint`] |
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
 //! | 9 | `free_path`, `along_path` |
@@ -72,6 +72,7 @@ pub mod batch;
 mod bodies;
 pub mod calibration;
 mod closed_form;
+pub mod constraint;
 pub mod error;
 mod free_path;
 pub mod ik;

@@ -208,7 +208,7 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 ///         Levenberg-Marquardt from many starts for everything else.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
-///     goals, prefer: as for `solve`.
+///     goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
 ///     limits: position limits; None: the robot's.
 ///     obstacles, margin, self_collision: as for `solve`.
 ///     stop: budgets of each target; None: as for `solve`.
@@ -231,9 +231,9 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 #[pyfunction]
 #[pyo3(signature = (robot, targets, *, starts=None, first_row=0, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=ToleranceArgument::All(1e-6),
-                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
+                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", joint_weights=None, limits=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, targets, *, starts=None, first_row=0, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, targets, *, starts=None, first_row=0, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
@@ -250,6 +250,7 @@ pub fn solve_batch(
     #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
+    joint_weights: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
@@ -281,6 +282,7 @@ pub fn solve_batch(
         rotation_tolerance: &rotation_tolerance,
         goals,
         prefer,
+        joint_weights,
         obstacles,
         margin,
         self_collision,

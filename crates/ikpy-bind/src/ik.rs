@@ -173,6 +173,11 @@ impl PySolution {
 ///         search
 ///         ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
 ///         traced once instead, including the parts beyond joint limits.
+///     joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
+///         (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+///         it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
+///         its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
+///         1e8. It needs a start, and takes no goals. None: all joints cost the same.
 ///     limits: position limits; None: the robot's.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
@@ -201,9 +206,9 @@ impl PySolution {
 ///     (6,)
 #[pyfunction]
 #[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=ToleranceArgument::All(1e-6),
-                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", limits=None, obstacles=None, margin=None,
+                    rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", joint_weights=None, limits=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve(
     py: Python<'_>,
@@ -216,6 +221,7 @@ pub fn solve(
     #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     goals: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] prefer: &str,
+    joint_weights: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
@@ -232,6 +238,7 @@ pub fn solve(
         rotation_tolerance: &rotation_tolerance,
         goals,
         prefer,
+        joint_weights,
         obstacles,
         margin,
         self_collision,

@@ -12,12 +12,17 @@ use crate::units::doubt;
 
 /// Reads a configuration (n,) in the order of q; values with names are put into it.
 pub fn joint_vector(robot: &Robot, what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let q = match in_order(robot, value)? {
-        Some(ordered) => vector(what, &ordered),
-        None => vector(what, value),
-    }?;
+    let q = joint_numbers(robot, what, value)?;
     doubt(units::of_configurations(robot, what, &q))?;
     Ok(q)
+}
+
+/// Reads one number for each joint, whatever its unit; values with names are put into the order of q.
+pub fn joint_numbers(robot: &Robot, what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match in_order(robot, value)? {
+        Some(ordered) => vector(what, &ordered),
+        None => vector(what, value),
+    }
 }
 
 /// Reads an array of configurations; values with names are put into the order of q.

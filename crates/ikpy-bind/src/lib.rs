@@ -10,6 +10,7 @@ mod hash;
 mod ik;
 mod indexing;
 mod joint_order;
+mod keep;
 mod limits;
 mod minimize;
 mod monitor;
@@ -63,6 +64,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(self_motion::self_motion, module)?)?;
     task::register(module)?;
     goal::register(module)?;
+    module.add_class::<keep::PyKeep>()?;
+    module.add_function(wrap_pyfunction!(keep::upright, module)?)?;
     module.add_class::<batch::PyBatchSolution>()?;
     module.add_function(wrap_pyfunction!(batch::solve_batch, module)?)?;
     module.add_function(wrap_pyfunction!(batch::batch_message, module)?)?;

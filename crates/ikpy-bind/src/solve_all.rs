@@ -258,6 +258,7 @@ pub fn solve_all(
         rotation_tolerance: &rotation_tolerance,
         goals: None,
         prefer: "any",
+        joint_weights: None,
         obstacles,
         margin,
         self_collision,

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::convert::count;
 use crate::error::raise;
 use crate::goal::read_goals;
+use crate::joint_order::joint_numbers;
 use crate::obstacle::read_surroundings;
 use crate::robot::PyRobot;
 use crate::solver::{PyStop, any_solver};
@@ -21,6 +22,7 @@ pub struct SolveArguments<'a, 'py> {
     pub rotation_tolerance: &'a ToleranceArgument<'py>,
     pub goals: Option<&'a Bound<'py, PyAny>>,
     pub prefer: &'a str,
+    pub joint_weights: Option<&'a Bound<'py, PyAny>>,
     pub obstacles: Option<&'a Bound<'py, PyAny>>,
     pub margin: Option<f64>,
     pub self_collision: Option<bool>,
@@ -48,6 +50,10 @@ impl SolveArguments<'_, '_> {
             solver: self.solver.map(any_solver).transpose()?,
             goals: read_goals(self.goals)?,
             prefer: self.prefer.parse().map_err(raise)?,
+            joint_weights: self
+                .joint_weights
+                .map(|weights| joint_numbers(&robot.core, "joint_weights", weights))
+                .transpose()?,
             start,
             limits,
             surroundings: read_surroundings(robot, self.obstacles, self.margin, self.self_collision)?,

@@ -259,3 +259,14 @@ pub fn read_task(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Task>> {
         Err(_) => Err(invalid(format!("task must be one of beetle_ik.tasks, got {}", summary(value)))),
     }
 }
+
+/// Returns the instance of `tasks` for a task.
+pub fn task_object<'py>(py: Python<'py>, task: &Task) -> PyResult<Bound<'py, PyAny>> {
+    let base = PyClassInitializer::from(PyTask { core: *task });
+    match task.kind {
+        TaskKind::Pose => Ok(Bound::new(py, base.add_subclass(PyPose))?.into_any()),
+        TaskKind::Position => Ok(Bound::new(py, base.add_subclass(PyPosition))?.into_any()),
+        TaskKind::Orientation => Ok(Bound::new(py, base.add_subclass(PyOrientation))?.into_any()),
+        TaskKind::Pointing { .. } => Ok(Bound::new(py, base.add_subclass(PyPointing))?.into_any()),
+    }
+}

@@ -20,6 +20,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::Tip => "tip=",
         Setting::OneTask => "task= for all tips",
         Setting::TaskOfEachTip => "task= of several tips is a dict, such as {tip: tasks.Position()}",
+        Setting::JointWeights => "joint_weights",
         Setting::AllTurns => "turns=True",
         Setting::RaiseInvalid => "use on_invalid=\"raise\"",
         Setting::Ease => "ease=True",

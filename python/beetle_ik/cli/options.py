@@ -10,7 +10,7 @@ import typer
 
 import beetle_ik as bik
 
-from .. import InvalidInputError, Robot, Sinusoid
+from .. import InvalidInputError, Keep, Robot, Sinusoid, upright
 from ..robot_files.descriptions import is_description
 
 if TYPE_CHECKING:
@@ -60,6 +60,10 @@ Trusted = Annotated[
     ),
 ]
 Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
+JointWeights = Annotated[
+    str | None,
+    typer.Option(help="Cost of moving each joint: w1,w2,...; heavy joints move where the others cannot do it."),
+]
 StartQ = Annotated[str | None, typer.Option("--start-q", help="Joint positions to start from: q1,q2,...")]
 Velocity = Annotated[
     str | None,
@@ -93,6 +97,26 @@ class FirstPart(StrEnum):
 
     POSITION = "position"
     ORIENTATION = "orientation"
+
+
+First = Annotated[
+    FirstPart | None,
+    typer.Option(help="Part of a pose to meet exactly where the whole cannot be met; the other as near as it allows."),
+]
+Tilt = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ANGLE",
+        help="Keep the axis --up of the tip within this angle of the vertical all the way: in rad, or as 10deg.",
+    ),
+]
+Up = Annotated[
+    str | None,
+    typer.Option(
+        metavar="AXIS",
+        help="Axis of the tip that --tilt keeps up: x, y, z, -x, -y, -z or X,Y,Z; default: -z, a hand that hangs.",
+    ),
+]
 
 
 class SolverName(StrEnum):
@@ -177,7 +201,7 @@ def _named(name: str, options: dict[str, Any]) -> Robot:
     return robot
 
 
-_WITH_ANGLES = ("--q", "--start", "--start-q", "--end", "--end-q", "--rpy", "--target")
+_WITH_ANGLES = ("--q", "--start", "--start-q", "--end", "--end-q", "--rpy", "--target", "--tilt")
 
 
 def numbers(option: str, text: str, length: int | None = None) -> list[float]:
@@ -200,6 +224,26 @@ def limit(option: str, text: str | None) -> float | list[float] | None:
         return None
     values = numbers(option, text)
     return values[0] if len(values) == 1 else values
+
+
+def kept_upright(robot: Robot, tilt: str | None, up: str | None) -> Keep | None:
+    """Reads an axis of the tip and its largest angle to the vertical; None if neither was given."""
+    if tilt is None:
+        if up is not None:
+            raise InvalidInputError("--up names the axis that --tilt keeps vertical: give --tilt too")
+        return None
+    name = "-z" if up is None else up
+    if name.lstrip("-").isalpha() and name not in _AXES:
+        raise InvalidInputError(f"--up: expected {', '.join(_AXES)} or X,Y,Z, got '{name}'")
+    axis = _AXES[name] if name in _AXES else numbers("--up", name, 3)
+    return upright(robot, axis=axis, direction=(0, 0, 1), tilt=numbers("--tilt", tilt, 1)[0])
+
+
+_AXES = {
+    sign + name: [number * (k == j) for k in range(3)]
+    for sign, number in (("", 1.0), ("-", -1.0))
+    for j, name in enumerate("xyz")
+}
 
 
 def sinusoid(option: str, text: str) -> Sinusoid:

@@ -10,7 +10,8 @@ from .. import solve as solve_target
 from .options import (
     AsJson,
     BaseLink,
-    FirstPart,
+    First,
+    JointWeights,
     LinkRadius,
     Margin,
     RobotName,
@@ -40,13 +41,9 @@ def solve(
         list[str] | None,
         typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),
     ] = None,
-    first: Annotated[
-        FirstPart | None,
-        typer.Option(
-            help="Part of a pose to meet exactly where the whole cannot be met; the other as near as it allows."
-        ),
-    ] = None,
+    first: First = None,
     start: Start = None,
+    joint_weights: JointWeights = None,
     solver: Annotated[
         SolverName | None, typer.Option(help="Default: the closed form, else Levenberg-Marquardt from many starts.")
     ] = None,
@@ -82,9 +79,13 @@ def solve(
     if first is not None:
         options["task"] = tasks.Pose(first=first.value)
     if every:
+        if joint_weights is not None:
+            raise InvalidInputError("--joint-weights choose one solution: leave out --all")
         found = solve_all(arm, wanted, **options)
         _show_all(arm, found, as_json)
         raise typer.Exit(0 if found.success else 1)
+    if joint_weights is not None:
+        options["joint_weights"] = numbers("--joint-weights", joint_weights)
     solution = solve_target(arm, wanted, **options)
     _show(arm, solution, as_json)
     given_up = solution.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)

@@ -108,6 +108,7 @@ def solve_batch(
     rotation_tolerance: _Tolerance = 1e-6,
     goals: _Goals = None,
     prefer: Literal["any", "nearest", "best"] = "any",
+    joint_weights: ArrayLike | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -140,6 +141,7 @@ def solve_batch(
         rotation_tolerance: largest rotation error (rad).
         goals: secondary objectives along the self-motion.
         prefer: choice among several solutions.
+        joint_weights: cost of moving each joint (n,).
         limits: position limits; None: the robot's.
         obstacles: obstacles in the frame of the base.
         margin: smallest distance (m).
@@ -168,6 +170,7 @@ def solve_batch(
         "rotation_tolerance": rotation_tolerance,
         "goals": read_once(goals),
         "prefer": prefer,
+        "joint_weights": joint_weights if joint_weights is None else _array("joint_weights", joint_weights),
         "limits": limits,
         "obstacles": obstacles_for(robot, obstacles) if isinstance(obstacles, Scene) else read_once(obstacles),
         "margin": margin,

@@ -33,6 +33,18 @@ def path_of(file: str | os.PathLike[str]) -> Path:
     return path
 
 
+def content_of(file: str | os.PathLike[str]) -> bytes:
+    """Returns the content of a file that describes something, as a scene.
+
+    Raises:
+        InvalidInputError: the argument is not the path of a file, or the file cannot be read.
+    """
+    try:
+        return path_of(file).read_bytes()
+    except OSError as error:
+        raise InvalidInputError(f"cannot read '{os.fspath(file)}': {error.strerror}") from error
+
+
 @contextmanager
 def whole_file(file: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """Opens `file` for writing. It is replaced when the block succeeds; if the block raises, the old file stays."""

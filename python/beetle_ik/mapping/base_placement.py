@@ -95,7 +95,7 @@ def best_base(
         A `BasePlacement`.
 
     Raises:
-        InvalidInputError: wrong shape or NaN; a map of another robot.
+        InvalidInputError: wrong shape, NaN, or no rigid transform; a map of another robot.
     """
     require("robot", robot, Robot)
     wanted = rigid("targets", targets)

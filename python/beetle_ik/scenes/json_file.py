@@ -20,7 +20,7 @@ import numpy as np
 from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle
 from ..calls.names import meant
-from ..files.whole import path_of, whole_file
+from ..files.whole import content_of, whole_file
 from .attached import Attached, checked
 
 VERSION = 1
@@ -68,7 +68,7 @@ def read_scene(file: str | os.PathLike[str]) -> tuple[list[Obstacle], list[Attac
     Raises:
         InvalidInputError: the file is not a scene; the message names the file and the obstacle.
     """
-    return _scene_in(path_of(file).read_bytes(), os.fspath(file))
+    return _scene_in(content_of(file), os.fspath(file))
 
 
 def obstacles_in(content: bytes, where: str) -> list[Obstacle]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle, pose
-from ..files.whole import path_of
+from ..files.whole import content_of
 from ..installed.needs import library
 from .attached import Attached, carried
 from .frames import frame_of, placed_frames, rigid
@@ -27,13 +27,13 @@ def read_moveit(file: str | os.PathLike[str], frame: ArrayLike | None) -> tuple[
     Raises:
         InvalidInputError: not a planning scene, or an object that cannot become an obstacle; the message names it.
     """
-    path, where = path_of(file), os.fspath(file)
+    content, where = content_of(file), os.fspath(file)
     place = np.eye(4) if frame is None else rigid(frame)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = content.decode("utf-8").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         raise InvalidInputError(f"{where}: not UTF-8: expected YAML, or a .scene text of RViz") from error
-    if path.suffix == ".scene" or is_rviz_text(text):
+    if where.endswith(".scene") or is_rviz_text(text):
         return rviz_obstacles(where, text, place), []
     return _planning_scene(where, text, place)
 

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import obstacles
 from .._core import InvalidInputError, Obstacle
-from ..files.whole import path_of
+from ..files.whole import content_of
 from .frames import rigid
 
 _DEPTH = 16  # levels below the root
@@ -54,9 +54,9 @@ def read_octomap(
     Raises:
         InvalidInputError: not such a file; the message names it.
     """
-    path, where = path_of(file), os.fspath(file)
+    content, where = content_of(file), os.fspath(file)
     place, corners = np.eye(4) if frame is None else rigid(frame), _corners(region)
-    return _grid(where, _tree(where, path.read_bytes()), place, corners)
+    return _grid(where, _tree(where, content), place, corners)
 
 
 def octomap_message(where: str, message: Any, at: NDArray[np.float64]) -> list[Obstacle]:

@@ -85,8 +85,8 @@ class Scene(Sequence[Obstacle]):
         class in lower case, with underscores) and the arguments of the class (m, rad).
 
         Raises:
-            InvalidInputError: the file is not a scene, or is of a later version; the message names the file and the
-                obstacle.
+            InvalidInputError: the file cannot be read, is not a scene, or is of a later version; the message names the
+                file and the obstacle.
         """
         from .json_file import read_scene
 
@@ -116,8 +116,8 @@ class Scene(Sequence[Obstacle]):
                 the pose of the frame that they lead to.
 
         Raises:
-            InvalidInputError: the file is not a planning scene, has objects in frames without a transform, or an object
-                that cannot be read; the message names the file, and the object or the line.
+            InvalidInputError: the file cannot be read or is not a planning scene, has objects in frames without a
+                transform, or an object that cannot be read; the message names the file, and the object or the line.
         """
         from .moveit import read_moveit
 
@@ -147,8 +147,8 @@ class Scene(Sequence[Obstacle]):
                 out. None: the whole map.
 
         Raises:
-            InvalidInputError: not such a file, an incomplete one, a map of another kind, a turned frame, or a map too
-                large for a grid without `region`; the message names the file.
+            InvalidInputError: no file, not such a file, an incomplete one, a map of another kind, a turned frame, or a
+                map too large for a grid without `region`; the message names the file.
         """
         from .octomap import read_octomap
 

@@ -10,6 +10,10 @@ from . import (
     command_line,
     dead_ends,
     described,
+    held_arms,
+    joint_weights,
+    keeping,
+    kept,
     kinematics,
     motion,
     own_points,
@@ -26,8 +30,29 @@ from . import (
 )
 
 _MODULES = (
-    *(kinematics, solving, round_poses, searching, several, tracking, starts, streams, dead_ends, motion, clearance),
-    *(own_points, readers, xacro_files, described, calibration, calls, command_line, units),
+    kinematics,
+    solving,
+    round_poses,
+    searching,
+    several,
+    tracking,
+    starts,
+    streams,
+    dead_ends,
+    held_arms,
+    motion,
+    keeping,
+    kept,
+    joint_weights,
+    clearance,
+    own_points,
+    readers,
+    xacro_files,
+    described,
+    calibration,
+    calls,
+    command_line,
+    units,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -24,12 +24,17 @@ impl ExecutedCurve {
 
     /// Times (ticks) and configurations of the last tick that `command` completes: of a spline it is the one before.
     pub fn after(&mut self, command: &[f64]) -> impl Iterator<Item = (f64, Vec<f64>)> {
+        self.sampled_after(command, SAMPLES)
+    }
+
+    /// [`after`](Self::after) at this many times.
+    pub fn sampled_after(&mut self, command: &[f64], samples: u32) -> impl Iterator<Item = (f64, Vec<f64>)> {
         self.commands.rotate_left(1);
         self.commands[3] = command.to_vec();
         self.ticks += 1.0;
         let begin = self.ticks - if self.is_spline { 2.0 } else { 1.0 };
-        (1..=SAMPLES).map(move |i| {
-            let s = f64::from(i) / f64::from(SAMPLES);
+        (1..=samples).map(move |i| {
+            let s = f64::from(i) / f64::from(samples);
             let weights = if self.is_spline { cubic_basis(s) } else { [0.0, 0.0, 1.0 - s, s] };
             let at = |j: usize| (0..4).map(|k| weights[k] * self.commands[k][j]).sum();
             (begin + s, (0..command.len()).map(at).collect())

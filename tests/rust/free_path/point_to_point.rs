@@ -222,8 +222,8 @@ fn a_plan_without_a_way_says_how_far_the_search_came() {
     let plan = cut_off(Endpoint::Configuration(vec![0.8, 0.0]), stop);
     assert_eq!(plan.status, Status::BudgetSpent);
     let message = plan.message();
-    let start = "no clear plan for the way from start to end: after ";
-    assert!(message.starts_with(start) && message.contains(" configurations what was reached from both ends stays "));
+    let start = "no clear plan for the way from start to end: none found in ";
+    assert!(message.starts_with(start) && message.contains(" configurations; what was reached from both ends stays "));
     assert!(
         message.contains(" rad apart; on the straight way link 'link")
             && message.contains(" m inside obstacle 0 (Box); try ")

@@ -333,6 +333,21 @@ fn options_that_do_not_go_together_are_told() {
         says(SolveOptions { goals, ..near(&[0.0; 7]) }),
         "the preference 'nearest' takes no goals: the distance to the start is its goal"
     );
+    let weighted = |start: Option<Vec<f64>>, goals: Vec<Goal>, weight: f64| {
+        let mut weights = vec![1.0; 7];
+        weights[3] = weight;
+        says(SolveOptions { start, goals, joint_weights: Some(weights), ..SolveOptions::default() })
+    };
+    assert_eq!(weighted(None, vec![], 2.0), "weights of joints need a start to measure motions from");
+    assert_eq!(
+        weighted(Some(vec![0.0; 7]), vec![Goal::Centring { weight: 1.0 }], 2.0),
+        "weights of joints take no goals: the weighted distance to the start is their goal; a Posture at the start, with a weight \
+         for each joint, may stand beside other goals"
+    );
+    assert_eq!(
+        weighted(Some(vec![0.0; 7]), vec![], 0.0),
+        "joint_weights[3] must be positive and finite (a joint that must not move is locked by its limits), got 0"
+    );
     let goals = vec![Goal::Centring { weight: 0.0 }];
     assert_eq!(
         says(SolveOptions { goals, ..SolveOptions::default() }),

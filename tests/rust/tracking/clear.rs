@@ -461,6 +461,5 @@ fn an_arm_that_cannot_come_nearer_comes_to_rest() {
             }
         }
     }
-    // One scene creeps on under velocity limits alone, at 0.015 rad/s.
-    assert!(late.len() <= 1 && late.iter().all(|(_, _, fastest)| *fastest < 0.05) && held > 200, "{held} {late:?}");
+    assert!(late.is_empty() && held > 200, "{held} {late:?}");
 }

@@ -5,7 +5,9 @@ use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
 use crate::limits::Limits;
 use crate::obstacle::{ClearSpace, ClearanceSweep, NearestContact};
-use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, certify, configuration_at};
+use crate::plan::{
+    END_RESERVE, EndName, Endpoint, PointToPointOptions, StraightLine, broken_along, certify, configuration_at,
+};
 use crate::solver::{Monitor, Status};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -136,6 +138,9 @@ impl LineSearch<'_> {
             Ok(motion) => motion,
             Err(why) => return Ok(Err((0.0, why))),
         };
+        if let Some(broken) = broken_along(self.tip.robot(), &self.options.keeps, &outward)? {
+            return Ok(Err((0.0, format!("what is to be kept on the way does not hold on it: {broken}"))));
+        }
         let margin = self.along_line.map_or(0.0, |space| space.margin() - END_RESERVE);
         let checked = self.along_line.map(|space| certify(&mut ClearanceSweep::new(space.scene()), &outward, margin));
         if let Some(Err(near)) = checked {

@@ -142,7 +142,7 @@ impl<'a> StraightTip<'a> {
             for j in (0..here.len()).filter(|j| here[*j] < self.limits.lower[*j] || here[*j] > self.limits.upper[*j]) {
                 (lower[j], upper[j]) = (lower[j].min(here[j]), upper[j].max(here[j]));
             }
-            let solved = linearization.project(&mut here, [&lower, &upper], STEPS, |q, at| {
+            let solved = linearization.project(&mut here, [&lower[..], &upper[..]], STEPS, |q, at| {
                 let there = target.linearize(&self.robot, q, &Criterion::default(), &mut at.first);
                 (!there.score.solved).then(|| at.least_damping(q.len()))
             });

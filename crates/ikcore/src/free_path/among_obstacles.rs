@@ -2,10 +2,12 @@
 //! certified timing of that path.
 
 use super::end_pair::EndPair;
+use super::line_check::Kept;
 use super::pair_search::PairSearch;
 use super::path_search::{Certified, PathSearch};
 use super::rrt_connect::TreeSearch;
 use super::straight_line_plan::{PAIRS, no_pair, straight};
+use crate::constraint::refuse_broken;
 use crate::error::{Error, Result};
 use crate::free_path::{no_way, path_search};
 use crate::math::vector::{point_between, squared_distance};
@@ -42,9 +44,14 @@ pub(super) fn plan(
     let is_lines = search.robot.capsules().is_empty();
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
-    let is_clear = |q: &[f64]| space.keeps(q, END_RESERVE);
+    let robot = search.robot;
+    let is_kept = |q: &[f64]| options.keeps.iter().all(|keep| keep.holds(robot, q));
+    let is_clear = |q: &[f64]| is_kept(q) && space.keeps(q, END_RESERVE);
     let refusal = |name: EndName, end: &Endpoint| match end {
-        Endpoint::Configuration(q) => refuse_collision(&name.of_target(), space, q),
+        Endpoint::Configuration(q) => {
+            let what = name.of_target();
+            refuse_broken(&what, &options.keeps, robot, q).and_then(|()| refuse_collision(&what, space, q))
+        }
         Endpoint::Targets { .. } => Ok(()),
     };
     refusal(EndName::Start, search.start)?;
@@ -66,6 +73,7 @@ pub(super) fn plan(
     let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =
         TreeSearch::new(scene, ranges, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
+    trees.check.kept = Kept::of(robot, &options.keeps, &trees.ranges);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),
@@ -90,21 +98,29 @@ pub(super) fn plan(
     let mut plan = match certified {
         Certified::Motion(trajectory, history) => {
             let clearance = Some(Clearance::at_least(margin));
-            let plan = Plan { history, clearance, ..search.plan(trajectory, options.objective) };
+            let keeps = options.keeps.clone();
+            let plan = Plan { history, clearance, keeps, ..search.plan(trajectory, options.objective) };
             if is_lines { with_least_clearance(plan, &mut sweep, margin)? } else { plan }
         }
         Certified::Nothing(status) => {
             let tried = if open.is_empty() { &pairs } else { &open };
             let trajectory = straight(least_penetrating(scene, tried).unwrap_or(first), limits)?;
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
-            let plan = with_least_clearance(plan, &mut sweep, margin)?;
-            let (obstruction, own_points) = if open.is_empty() {
-                no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
-            } else {
-                let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
-                let straight = nearest.map(|nearest| &nearest.contact);
-                (no_way::gap(trees.gap, trees.check.examined(), straight, margin), None)
-            };
+            let mut plan = with_least_clearance(plan, &mut sweep, margin)?;
+            let broken = plan.note_kept(robot, &options.keeps)?;
+            if plan.status == Status::Solved && broken.is_some() {
+                plan.status = status;
+            }
+            let (obstruction, own_points) =
+                if let (true, Some(broken)) = (open.is_empty(), no_way::broken_ends(&pairs, &options.keeps, robot)) {
+                    (broken, None)
+                } else if open.is_empty() {
+                    no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
+                } else {
+                    let nearest = plan.clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
+                    let contact = nearest.map(|nearest| nearest.contact.in_words(margin));
+                    (no_way::gap(trees.gap, trees.check.examined(), contact.or(broken)), None)
+                };
             Plan { obstruction: (plan.status != Status::Solved).then_some(obstruction), own_points, ..plan }
         }
     };

@@ -1,8 +1,9 @@
-//! Certified timings of a path: they keep its margin at every instant.
+//! Certified timings of a path: they keep its margin and its constraints at every instant.
 
+use super::line_check::{Kept, LineCheck};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
-use crate::obstacle::{ClearanceSweep, SampledLine};
+use crate::obstacle::ClearanceSweep;
 use crate::plan::{Deadline, TimedMotion, configuration_at};
 use crate::timing::{ConstantLimits, JointPolyline};
 use crate::trajectory::Trajectory;
@@ -26,6 +27,8 @@ pub(super) struct TimedPath {
 pub(super) struct Timing<'s, 'a> {
     pub limits: &'s ConstantLimits,
     pub sweep: &'s mut ClearanceSweep<'a>,
+    /// Constraints to keep, if there are any.
+    pub kept: Option<&'s mut Kept<'a>>,
     /// Distance to keep (m).
     pub margin: f64,
     pub deadline: Deadline,
@@ -46,7 +49,7 @@ impl TimedPath {
 
 /// The fraction of the shorter adjacent line that the blend of inner point `i` takes. It cuts the corner: it is as wide as the line
 /// between its ends is clear.
-pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLimits, check: &mut SampledLine) -> f64 {
+pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLimits, check: &mut LineCheck) -> f64 {
     let mut fraction = 1.0;
     while fraction > LEAST_FRACTION {
         let [from, to] = path.blend_ends(limits, i, fraction);
@@ -59,33 +62,47 @@ pub(super) fn clear_fraction(path: &JointPolyline, i: usize, limits: &ConstantLi
 }
 
 impl Timing<'_, '_> {
-    /// Returns the certified motion along a path: with blends, narrower where they come too near, or else with a stop
-    /// at each corner. `None` if a line of the path comes too near.
+    /// Returns the certified motion along a path: with blends, narrower where they come too near or leave a
+    /// constraint, or else with a stop at each corner. `None` if a line of the path does.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
         let TimedPath { path, mut fractions, motion } = timed;
-        let Some(mut near) = self.too_near(&motion) else { return Ok(Some(motion)) };
+        if let Some(kept) = self.kept.as_mut().filter(|kept| kept.is_narrow) {
+            let followed = kept.followed(&motion, self.limits)?;
+            return Ok(followed.filter(|motion| self.first_contact(motion).is_none()));
+        }
+        let Some(mut fault) = self.first_fault(&motion) else { return Ok(Some(motion)) };
         let stopping = path.with_stops(self.limits)?;
         let mut blended = motion;
         for _ in 0..NARROWINGS {
             if path.0.len() < 3 || self.deadline.is_over() {
                 break;
             }
-            fractions[nearest_corner(&path, &blended, near)?] *= 0.5;
+            fractions[nearest_corner(&path, &blended, fault)?] *= 0.5;
             let Some(narrower) = path.with_blends(self.limits, &fractions).transpose()? else { break };
             blended = narrower;
             if blended.duration() >= stopping.duration() {
                 break;
             }
-            match self.too_near(&blended) {
+            match self.first_fault(&blended) {
                 None => return Ok(Some(blended)),
-                Some(at) => near = at,
+                Some(at) => fault = at,
             }
         }
-        Ok(self.too_near(&stopping).is_none().then_some(stopping))
+        Ok(self.first_fault(&stopping).is_none().then_some(stopping))
+    }
+
+    /// The time at which a motion comes too near to something or leaves a constraint (s), if any.
+    fn first_fault(&mut self, motion: &Trajectory) -> Option<f64> {
+        let (timed, whole) = (TimedMotion::new(motion), [0.0, motion.duration()]);
+        let broken = self.kept.as_mut().and_then(|kept| kept.sweep.check(&timed, whole).err());
+        if let Some(broken) = broken {
+            return Some(broken.at);
+        }
+        self.first_contact(motion)
     }
 
     /// The time at which a motion comes too near to something (s), if any.
-    fn too_near(&mut self, motion: &Trajectory) -> Option<f64> {
+    fn first_contact(&mut self, motion: &Trajectory) -> Option<f64> {
         let checked = self.sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], self.margin);
         checked.err().map(|near| near.at)
     }

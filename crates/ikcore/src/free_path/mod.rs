@@ -12,8 +12,10 @@
 //! | [`certified_timing`] | timings of a path that keep the margin for certain |
 //! | [`no_way`] | why there is no clear motion |
 //! | [`moving_start`] | motions that begin at a velocity |
+//! | [`line_check`] | whether a straight line can be part of a path |
 //! | [`rrt_connect`], [`configuration_tree`] | RRT-Connect, half of whose attempts grow from little-tried nodes |
 //! | [`joint_groups`] | joints that move independently of each other, such as each arm of two |
+//! | [`narrow_way`] | motions within constraints that leave straight lines no room |
 //! | [`shortening`] | shortcuts |
 //! | [`refinement`], [`improvement`] | local search round a path, and round the best of many |
 
@@ -25,8 +27,10 @@ mod end_pair;
 mod improvement;
 mod joint_groups;
 mod least_displacement;
+mod line_check;
 mod minmax_planner;
 mod moving_start;
+mod narrow_way;
 mod no_way;
 mod pair_search;
 mod path_search;

@@ -3,12 +3,13 @@
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::straight_line_plan::{PAIRS, no_pair};
+use crate::constraint::{KeepSweep, refuse_broken};
 use crate::error::{Error, Result, require_finite};
 use crate::limits::{Limits, ROUNDING, StartSlack};
 use crate::message::{Setting, message};
 use crate::motion::{ArmState, state_to_state_from, stop};
 use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
-use crate::plan::{Endpoint, Plan, PointToPointOptions, certify, joined, least_clearance};
+use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance};
 use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::trajectory::Trajectory;
@@ -45,12 +46,17 @@ pub(super) fn begin(
         });
     };
     check(search, velocity)?;
+    refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
-    let mut is_free =
-        |motion: &Trajectory| sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok());
+    let mut kept = (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps));
+    let mut is_free = |motion: &Trajectory| {
+        let whole = [0.0, motion.duration()];
+        kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
+            && sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
+    };
     let pairs = search.pairs(PAIRS, monitor)?;
     let last = pairs.first().ok_or_else(no_pair)?;
     let direct = |end: &[f64]| state_to_state_from(&from, &ArmState::at_rest(end), &limits, &taken).ok();
@@ -78,7 +84,11 @@ pub(super) fn begin(
     let problem = message![
         "at ",
         Setting::StartVelocity,
-        " the arm cannot stop before it comes nearer to an obstacle than the margin"
+        if options.keeps.is_empty() {
+            " the arm cannot stop before it comes nearer to an obstacle than the margin"
+        } else {
+            " the arm cannot stop before it comes nearer to an obstacle than the margin, or breaks what is to be kept"
+        }
     ];
     Err(Error::Infeasible { problem })
 }

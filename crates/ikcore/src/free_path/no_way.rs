@@ -1,7 +1,9 @@
 //! Reasons why there is no clear motion: a blocked end, or the gap left by the search.
 
 use super::end_pair::EndPair;
+use crate::constraint::Keep;
 use crate::obstacle::{Contact, Scene, Sensed};
+use crate::robot::Robot;
 use crate::wording::number;
 
 /// Names the obstruction where none of `pairs` has two clear ends, which keep `kept` (m) from everything.
@@ -21,15 +23,26 @@ pub(super) fn blocked_ends(scene: &Scene, pairs: &[EndPair], kept: f64) -> (Stri
     (format!("{name}: no configuration was found that is clear of everything{found}"), own_points)
 }
 
-/// Describes the gap `left` between the trees from both ends after `examined` configurations, and the obstacle to the
+/// Names the constraint that is broken where none of `pairs` has two ends within all of them; `None` if some have.
+pub(super) fn broken_ends(pairs: &[EndPair], keeps: &[Keep], robot: &Robot) -> Option<String> {
+    let broken = |q: &[f64]| keeps.iter().find_map(|keep| keep.broken_at(robot, q));
+    let at_starts = pairs.iter().map(|pair| broken(&pair.start)).collect::<Option<Vec<String>>>();
+    let (name, all) = match at_starts {
+        Some(all) => ("start", all),
+        None => ("end", pairs.iter().map(|pair| broken(&pair.end)).collect::<Option<Vec<String>>>()?),
+    };
+    let first = all.first()?;
+    Some(format!("{name}: no configuration was found at which holds what is to be kept; there {first}"))
+}
+
+/// Describes the gap `left` between the trees from both ends after `examined` configurations, and what is wrong with the
 /// straight motion.
-pub(super) fn gap(left: f64, examined: usize, straight: Option<&Contact>, kept: f64) -> String {
+pub(super) fn gap(left: f64, examined: usize, straight: Option<String>) -> String {
     let came = if left.is_finite() {
         format!("what was reached from both ends stays {} rad apart", number(left))
     } else {
         "nothing was reached from either end".into()
     };
-    let in_the_way =
-        straight.map_or(String::new(), |contact| format!("; on the straight way {}", contact.in_words(kept)));
-    format!("the way from start to end: after {examined} configurations {came}{in_the_way}")
+    let in_the_way = straight.map_or(String::new(), |wrong| format!("; on the straight way {wrong}"));
+    format!("the way from start to end: none found in {examined} configurations; {came}{in_the_way}")
 }

@@ -2,6 +2,7 @@
 
 use super::end_pair::EndPair;
 use super::least_displacement::Freedom;
+use crate::constraint::{Keep, Onto};
 use crate::error::{Error, Result};
 use crate::free_path::least_displacement;
 use crate::ik::{Solution, SolveOptions, solve};
@@ -12,7 +13,7 @@ use crate::plan::{Cost, Deadline, EndName, EndTurns, Endpoint, Improvement, Plan
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Target, Task};
+use crate::task::{NamedTask, Target, Task, Tolerance};
 use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
@@ -31,6 +32,8 @@ pub(super) struct PairSearch<'a> {
     pub position_limits: Limits,
     end_turns: EndTurns,
     freedom: Freedom<'a>,
+    /// What holds at every instant of the motion, so at its ends too.
+    keeps: &'a [Keep],
 }
 
 /// Evaluations that random starts may cost in all, so that ends without a free configuration take a fraction of a second.
@@ -44,7 +47,7 @@ impl<'a> PairSearch<'a> {
         limits: &'a ConstantLimits,
         start: &'a Endpoint,
         ends: &'a [Endpoint],
-        options: &PointToPointOptions,
+        options: &'a PointToPointOptions,
         deadline: Deadline,
     ) -> Result<Self> {
         let position_limits = limits.position_limits(robot)?;
@@ -63,6 +66,7 @@ impl<'a> PairSearch<'a> {
             position_limits,
             end_turns: options.end_turns,
             freedom,
+            keeps: &options.keeps,
         })
     }
 
@@ -233,7 +237,7 @@ impl<'a> PairSearch<'a> {
         };
         let solution = self.solve(target, start, monitor)?;
         match solution.status {
-            _ if self.takes(solution.status) => Ok(Some(solution.q)),
+            _ if self.takes(solution.status) => Ok(Some(self.brought(target, solution.q)?)),
             Status::RotationGivenUp if attempt == 0 => {
                 let problem = message![solution.message(), ", or give ", Setting::First("position"), " to end there"];
                 Err(Error::Unreachable { what: name.of_target(), problem })
@@ -244,6 +248,23 @@ impl<'a> PairSearch<'a> {
             }
             _ => Ok(None),
         }
+    }
+
+    /// The configuration of `target` near `q` at which everything holds that is to be kept; `q` itself where none is found.
+    fn brought(&self, target: &Target, q: Point) -> Result<Point> {
+        if self.holds(&q) {
+            return Ok(q);
+        }
+        let (task, mut target) = (NamedTask::of_only(self.task, Tolerance::default()).validated()?, *target);
+        task.reduce(&mut target)?;
+        let limits = [&self.limits.lower[..], &self.limits.upper[..]];
+        let mut onto = Onto::new(self.robot, self.keeps, limits).reaching([(task, target)]);
+        let mut moved = q.clone();
+        Ok(if onto.bring(&mut moved) { moved } else { q })
+    }
+
+    fn holds(&self, q: &[f64]) -> bool {
+        self.keeps.iter().all(|keep| keep.holds(self.robot, q))
     }
 
     /// Whether an end with this status is taken: one that gives up a part does so only by the caller's own order.
@@ -281,7 +302,8 @@ impl<'a> PairSearch<'a> {
             }
         }
         let moved = self.pair(moved.start, moved.end, pair.chosen);
-        if moved.duration < pair.duration { moved } else { pair }
+        let holds = self.holds(&moved.start) && self.holds(&moved.end);
+        if holds && moved.duration < pair.duration { moved } else { pair }
     }
 
     /// Solved plan of a motion, with the limits that it violates.

@@ -110,7 +110,7 @@ impl<'a> PathSearch<'_, 'a> {
                 return Ok(best.certified(status));
             }
             let more = SEARCH_RESERVE * f64::from(2_u32.pow(round + 1));
-            self.trees.check.be_stricter(self.margin + more.min(self.most));
+            self.trees.check.clear.be_stricter(self.margin + more.min(self.most));
         }
         Ok(best.certified(Status::Stalled))
     }
@@ -247,7 +247,8 @@ impl<'a> PathSearch<'_, 'a> {
     }
 
     fn timing(&mut self) -> Timing<'_, 'a> {
-        let Self { search, sweep, margin, .. } = self;
-        Timing { limits: search.limits, sweep, margin: *margin, deadline: search.deadline }
+        let Self { trees, search, sweep, margin, .. } = self;
+        let kept = trees.check.kept.as_mut();
+        Timing { limits: search.limits, sweep, kept, margin: *margin, deadline: search.deadline }
     }
 }

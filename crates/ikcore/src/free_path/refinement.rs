@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::certified_timing::clear_fraction;
+use super::line_check::LineCheck;
 use super::rrt_connect::TreeSearch;
 use super::shortening::along;
 use crate::math::vector::{distance, point_between};
-use crate::obstacle::SampledLine;
 use crate::plan::{Cost, tip_travel_along};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
@@ -83,7 +83,7 @@ pub(super) struct BlendedPath {
 
 impl BlendedPath {
     /// A clear path with blends as wide as seems clear.
-    pub(super) fn new(path: JointPolyline, measure: &PathMeasure, check: &mut SampledLine) -> Self {
+    pub(super) fn new(path: JointPolyline, measure: &PathMeasure, check: &mut LineCheck) -> Self {
         let mut fractions = vec![1.0; path.0.len()];
         for (i, fraction) in fractions.iter_mut().enumerate().skip(1).take(path.0.len() - 2) {
             *fraction = clear_fraction(&path, i, measure.limits, check);
@@ -141,10 +141,18 @@ impl Variation {
     }
 
     /// Returns the path with blends as wide as seems clear, if it is clear and better than `best`.
-    fn improvement_of(self, best: &BlendedPath, measure: &PathMeasure, check: &mut SampledLine) -> Option<BlendedPath> {
+    fn improvement_of(
+        mut self,
+        best: &BlendedPath,
+        measure: &PathMeasure,
+        check: &mut LineCheck,
+    ) -> Option<BlendedPath> {
         let mut fractions = self.fractions(&best.fractions);
         // Narrower blends only cost more.
         if measure.of(&self.path, &fractions) >= best.cost {
+            return None;
+        }
+        if !self.path.0[self.new.clone()].iter_mut().all(|point| check.bring(point)) {
             return None;
         }
         let changed = &self.path.0[self.new.start - 1..=self.new.end];

@@ -8,7 +8,8 @@
 
 use super::configuration_tree::ConfigurationTree;
 use super::joint_groups::joint_groups;
-use crate::math::vector::write_between;
+use super::line_check::LineCheck;
+use crate::math::vector::{distance, write_between};
 use crate::objective::Point;
 use crate::obstacle::{SampledLine, Scene};
 use crate::plan::Deadline;
@@ -32,11 +33,17 @@ pub(super) enum Connection {
 const STRIDE: f64 = 1.0;
 /// Largest length of an edge in a random direction (rad, m).
 const FARTHEST: f64 = 3.0;
+/// Fraction of both within constraints, which long lines leave.
+const WITHIN: f64 = 0.5;
+/// Fraction of a stride by which one at least brings a tree nearer to its goal.
+const LEAST_GAIN: f64 = 0.1;
 
 /// Budget of node comparisons per configuration of the budget: about as much work again.
 const COMPARISONS: f64 = 100.0;
 /// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
+/// Cost of a sample that no constraint admits, in comparisons.
+const PROJECTION: usize = 300;
 
 /// Number of draws after which a sample is taken even if it is not promising.
 const DRAWS: usize = 1000;
@@ -56,7 +63,7 @@ pub(super) struct Route<'r> {
 
 /// The search: lines, ranges and budgets.
 pub(super) struct TreeSearch<'a> {
-    pub check: SampledLine<'a>,
+    pub check: LineCheck<'a>,
     /// Lowest and highest value of each joint.
     pub ranges: Vec<(f64, f64)>,
     /// Total number of configurations that may be examined.
@@ -79,7 +86,7 @@ impl<'a> TreeSearch<'a> {
         budget: usize,
         deadline: Deadline,
     ) -> Self {
-        let check = SampledLine::new(scene, margin);
+        let check = LineCheck { clear: SampledLine::new(scene, margin), kept: None };
         let groups = Some(joint_groups(scene.robot())).filter(|groups| groups.len() > 1);
         let all = (0..ranges.len()).collect();
         let moves = [all].into_iter().chain(groups.into_iter().flatten()).collect();
@@ -168,6 +175,11 @@ impl<'a> TreeSearch<'a> {
         Connection::NotFound
     }
 
+    /// A length of an edge (rad, m), shorter within constraints.
+    fn shortened(&self, length: f64) -> f64 {
+        if self.check.kept.is_some() { WITHIN * length } else { length }
+    }
+
     /// Grows `tree` by a stride from its nearest node towards a sample; writes the new configuration to `next`.
     fn grow_towards_sample(
         &mut self,
@@ -177,13 +189,19 @@ impl<'a> TreeSearch<'a> {
         next: &mut [f64],
     ) -> Option<usize> {
         self.draw(route, rng, next);
+        if !self.check.bring(next) {
+            self.compared += PROJECTION;
+            return None;
+        }
         self.compared += tree.len();
         let (near, distance) = tree.nearest(next)?;
-        if distance > STRIDE {
+        let stride = self.shortened(STRIDE);
+        if distance > stride {
             let sample = Point::from_slice(next);
-            step_towards(tree.node(near), &sample, STRIDE / distance, next);
+            step_towards(tree.node(near), &sample, stride / distance, next);
         }
-        self.check.is_clear(tree.node(near), next).then(|| tree.add(next, Some(near)))
+        let is_open = self.check.bring(next) && self.check.is_clear(tree.node(near), next);
+        is_open.then(|| tree.add(next, Some(near)))
     }
 
     /// Grows `tree` from a node with few attempts, in a random direction; writes the new configuration to `next`.
@@ -198,14 +216,16 @@ impl<'a> TreeSearch<'a> {
         let node = tree.little_tried(rng);
         next.copy_from_slice(tree.node(node));
         let moved = &self.moves[rng.below(self.moves.len())];
-        let length = FARTHEST * rng.uniform();
+        let length = self.shortened(FARTHEST) * rng.uniform();
         let mut direction = Point::from_elem(0.0, moved.len());
         rng.direction(&mut direction);
         for (j, part) in moved.iter().zip(&direction) {
             let (lower, upper) = self.ranges[*j];
             next[*j] = (next[*j] + length * part).max(lower).min(upper);
         }
-        ((route.is_promising)(next) && self.check.is_clear(tree.node(node), next)).then(|| tree.add(next, Some(node)))
+        let is_open =
+            (route.is_promising)(next) && self.check.bring(next) && self.check.is_clear(tree.node(node), next);
+        is_open.then(|| tree.add(next, Some(node)))
     }
 
     /// Draws a configuration that is promising, if possible.
@@ -224,19 +244,23 @@ impl<'a> TreeSearch<'a> {
     /// Grows `tree` towards `goal` stride by stride; returns the node from which a clear line leads there.
     fn reach(&mut self, tree: &mut ConfigurationTree, goal: &[f64]) -> Option<usize> {
         self.compared += tree.len();
-        let (mut at, mut distance) = tree.nearest(goal)?;
+        let (mut at, mut left) = tree.nearest(goal)?;
         let mut next = goal.to_vec();
-        while distance > STRIDE {
-            step_towards(tree.node(at), goal, STRIDE / distance, &mut next);
-            if self.is_spent() || !self.check.is_clear(tree.node(at), &next) {
-                self.gap = self.gap.min(distance);
+        let stride = self.shortened(STRIDE);
+        while left > stride {
+            step_towards(tree.node(at), goal, stride / left, &mut next);
+            let is_open = !self.is_spent() && self.check.bring(&mut next) && self.check.is_clear(tree.node(at), &next);
+            // Constraints may lead a step aside, or back.
+            let after = distance(&next, goal);
+            if !is_open || after > left - LEAST_GAIN * stride {
+                self.gap = self.gap.min(left);
                 return None;
             }
             at = tree.add(&next, Some(at));
-            distance -= STRIDE;
+            left = after;
         }
         let met = self.check.is_clear(tree.node(at), goal);
-        self.gap = self.gap.min(if met { 0.0 } else { distance });
+        self.gap = self.gap.min(if met { 0.0 } else { left });
         met.then_some(at)
     }
 }

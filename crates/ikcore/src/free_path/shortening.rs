@@ -25,9 +25,9 @@ impl TreeSearch<'_> {
                 break;
             }
             let (first, second, lines) = (rng.uniform(), rng.uniform(), (points.len() - 1) as f64);
-            let (i, from) = along(&points, first.min(second) * lines);
-            let (k, to) = along(&points, first.max(second) * lines);
-            if i == k {
+            let (i, mut from) = along(&points, first.min(second) * lines);
+            let (k, mut to) = along(&points, first.max(second) * lines);
+            if i == k || !self.check.bring(&mut from) || !self.check.bring(&mut to) {
                 continue;
             }
             let mut old = vec![from.clone()];

@@ -115,15 +115,20 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
-    /// Runs a single start of the default solver from `x0`, which stalls as soon as it makes too little progress.
+    /// Runs a single start of the default solver from `x0`, by the weights of the joints; it stalls as soon as it makes too little
+    /// progress.
     pub fn search_once(&mut self, x0: &[f64]) -> (Status, Point) {
+        self.search_once_within(self.context.weighted_bounds(), x0)
+    }
+
+    /// Runs a single start like [`search_once`](Self::search_once) within `bounds`.
+    pub fn search_once_within(&mut self, bounds: &Bounds, x0: &[f64]) -> (Status, Point) {
         let Some(MultiStart { solver, rule }) = self.context.solver().restarted_descent() else {
             return (Status::Stalled, Point::from_slice(x0));
         };
         let once = MultiStart { solver, rule: RestartRule { max_starts: 1, ..rule } };
         let objective: &mut dyn Differentiable = self.problem;
-        let (bounds, stop) = (self.context.bounds(), self.budget.rest(0));
-        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
         let status = run(&once, &mut evaluator, x0);
         self.budget.add(&evaluator);
         (status, Point::from_slice(&evaluator.best().x))
@@ -205,7 +210,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             robot: self.context.robot(),
             problem: self.problem,
             goals,
-            bounds: self.context.bounds(),
+            bounds: self.context.weighted_bounds(),
             space: self.context.space(),
             evaluations: 0,
             max_evaluations: self.budget.left(),

@@ -1,7 +1,7 @@
 //! Validated arguments shared by all targets of a call.
 
 use std::borrow::Cow;
-use std::sync::{LazyLock, OnceLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 use smallvec::SmallVec;
 
@@ -11,14 +11,14 @@ use super::ranked::given_up;
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
-use crate::math::sampling_range;
+use crate::math::{JointWeights, sampling_range};
 use crate::message::{Setting, message};
 use crate::objective::Bounds;
 use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Status, Stopwatch};
-use crate::task::{Aims, CheckedTask, First, Goals, SquaredError, Target, TargetRow};
+use crate::task::{Aims, CheckedTask, First, Goal, Goals, SquaredError, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +44,8 @@ pub(crate) struct SolveContext<'a> {
     tasks: SmallVec<[CheckedTask; 1]>,
     goals: Goals,
     bounds: Bounds,
+    /// The same box with the weights of the joints, if they differ; boxed to keep the context small.
+    weighted: Option<Box<Bounds>>,
     /// Preference of queries without a start, computed on first use.
     central: OnceLock<Preference>,
     /// Clear space of the solutions; boxed to keep the context small.
@@ -66,6 +68,15 @@ impl<'a> SolveContext<'a> {
                 message![Setting::Prefer("nearest"), " takes no goals: the distance to the start is its goal"];
             return Err(Error::Contradiction { problem });
         }
+        let weights = joint_weights(robot, options.joint_weights.as_deref())?;
+        if options.joint_weights.is_some() && !options.goals.is_empty() {
+            let problem = message![
+                Setting::JointWeights,
+                " take no goals: the weighted distance to the start is their goal; a Posture at the start, with a weight for \
+                 each joint, may stand beside other goals"
+            ];
+            return Err(Error::Contradiction { problem });
+        }
         if options.prefer == Prefer::Best && options.goals.is_empty() {
             let problem = message![Setting::Prefer("best"), " needs goals to compare solutions by"];
             return Err(Error::Contradiction { problem });
@@ -79,8 +90,9 @@ impl<'a> SolveContext<'a> {
         for task in tasks.iter_mut().filter(|task| task.criterion.components.is_some() && task.criterion.has_band()) {
             task.criterion = task.criterion.beyond_tolerance();
         }
+        let weighted = weights.map(|weights| Box::new(bounds.clone().weighted(Some(Arc::new(weights)))));
         let goals = Goals::new(&options.goals, with_tool.as_deref().unwrap_or(robot), &bounds);
-        Ok(Self { robot, with_tool, options, tasks, goals, bounds, central: OnceLock::new(), space })
+        Ok(Self { robot, with_tool, options, tasks, goals, bounds, weighted, central: OnceLock::new(), space })
     }
 
     pub(crate) fn robot(&self) -> &Robot {
@@ -91,8 +103,38 @@ impl<'a> SolveContext<'a> {
         &self.bounds
     }
 
+    /// Box of the steps near a start or a solution, by the weights of the joints.
+    pub(super) fn weighted_bounds(&self) -> &Bounds {
+        self.weighted.as_deref().unwrap_or(&self.bounds)
+    }
+
+    /// Weights of the joints; `None` where all cost the same.
+    pub(super) fn weights(&self) -> Option<&JointWeights> {
+        self.weighted.as_ref().and_then(|bounds| bounds.weights()).map(|weights| &**weights)
+    }
+
+    /// Goals of the call.
     pub(super) fn goals(&self) -> &Goals {
         &self.goals
+    }
+
+    /// Goals that a solution is moved by: those of the call or, with weights of the joints, the distance to the start. `None`
+    /// without either.
+    pub(super) fn goals_from(&self, start: Option<&[f64]>) -> Option<Goals> {
+        match start {
+            Some(start) if self.weights().is_some() => Some(self.distance_from(start)),
+            _ => Some(&self.goals).filter(|goals| !goals.is_empty()).cloned(),
+        }
+    }
+
+    /// Squared distance from `start`, by the weights of the joints, as a goal.
+    pub(super) fn distance_from(&self, start: &[f64]) -> Goals {
+        let posture = start.to_vec();
+        let goal = match self.weights() {
+            None => Goal::Posture { posture, weight: 1.0 },
+            Some(weights) => Goal::WeightedPosture { posture, weights: weights.as_slice().to_vec() },
+        };
+        Goals::new(&[goal], self.robot(), &self.bounds)
     }
 
     /// Clear space of the solutions, if collisions are checked.
@@ -143,7 +185,7 @@ impl<'a> SolveContext<'a> {
     /// Preference among several solutions.
     pub(super) fn preference(&self, start: Option<&[f64]>) -> Cow<'_, Preference> {
         match start {
-            Some(_) => Cow::Owned(Preference::new(self.robot(), &self.bounds, start)),
+            Some(_) => Cow::Owned(Preference::new(self.robot(), self.weighted_bounds(), start)),
             None => Cow::Borrowed(self.central()),
         }
     }
@@ -238,7 +280,7 @@ impl<'a> SolveContext<'a> {
         q.iter().enumerate().map(joint).collect()
     }
 
-    /// Checks that the preference for the nearest solution comes with a start.
+    /// Checks that the preference for the nearest solution, and weights of joints, come with a start.
     ///
     /// # Errors
     /// [`Error::Contradiction`].
@@ -247,9 +289,22 @@ impl<'a> SolveContext<'a> {
             (Prefer::Nearest, None) => Err(Error::Contradiction {
                 problem: message![Setting::Prefer("nearest"), " needs a start to measure distances from"],
             }),
+            (_, None) if self.options.joint_weights.is_some() => Err(Error::Contradiction {
+                problem: message![Setting::JointWeights, " need a start to measure motions from"],
+            }),
             _ => Ok(()),
         }
     }
+}
+
+/// Returns the weights of the joints of `robot`, if they differ.
+///
+/// # Errors
+/// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::OutOfRange`].
+pub(crate) fn joint_weights(robot: &Robot, weights: Option<&[f64]>) -> Result<Option<JointWeights>> {
+    let Some(weights) = weights else { return Ok(None) };
+    robot.check("joint_weights", weights)?;
+    JointWeights::new(weights)
 }
 
 /// Position limits as a box. Velocity limits do not matter for a single configuration.

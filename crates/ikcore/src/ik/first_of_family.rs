@@ -82,6 +82,15 @@ impl<'a> FamilySearch<'a> {
         }
     }
 
+    /// Solution at one of the first parameter values: most poses have one there.
+    pub fn at_first_values(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+        let mut likely = ArmConfigurations::none();
+        self.arcs.scattered(ANGLES_BEFORE_DOUBT).find_map(|value| {
+            self.family.likely_at(value, &self.limits, &mut likely);
+            attempt.preferred(&self.preference, &mut likely).ok()
+        })
+    }
+
     /// Descends from the closed form at a few values, for an arm whose structure is only approximate.
     fn near_the_pose(&self, attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
         if !self.family.is_approximate() {

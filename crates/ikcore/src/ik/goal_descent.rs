@@ -41,6 +41,7 @@ pub(super) struct GoalDescent<'a, 'p> {
 struct TaskPoint {
     q: Point,
     cost: f64,
+    /// Gradient, or direction of steepest ascent by the weights of the joints.
     gradient: Point,
 }
 
@@ -75,8 +76,8 @@ impl GoalDescent<'_, '_> {
             self.linearize(&here.q, &mut linearization);
             let slope = self.projected(&here, &linearization);
             if let Some((step, before)) = last.take() {
-                let bend = dot(&step, &difference(&slope, &before));
-                rate = if bend > 0.0 { dot(&step, &step) / bend } else { f64::INFINITY };
+                let bend = self.dot(&step, &difference(&slope, &before));
+                rate = if bend > 0.0 { self.dot(&step, &step) / bend } else { f64::INFINITY };
             }
             rate = rate.min(LONGEST / largest(&slope));
             let Some(there) = self.shorter_until_better(&here, &linearization, &slope, &mut rate, within) else {
@@ -115,7 +116,7 @@ impl GoalDescent<'_, '_> {
     /// gain from using up the tolerance could not be repeated in the next step.
     fn correct(&mut self, q: &mut Point) -> bool {
         let (mut was_solved, bounds) = (false, self.bounds);
-        Linearization::default().project(q, bounds.ends(), MOST_CORRECTIONS, |q, at| {
+        Linearization::default().project(q, bounds, MOST_CORRECTIONS, |q, at| {
             let is_solved = self.linearize(q, at);
             let ends = is_solved && was_solved;
             was_solved = is_solved;
@@ -137,7 +138,7 @@ impl GoalDescent<'_, '_> {
         let mut preferred: Point = here.q.iter().zip(slope).map(|(q, slope)| q - rate * slope).collect();
         self.bounds.clip(&mut preferred);
         let mut out = preferred.clone();
-        at.write_step_near(&preferred, at.least_damping(here.q.len()), &here.q, self.bounds.ends(), &mut out);
+        at.write_step_near(&preferred, at.least_damping(here.q.len()), &here.q, self.bounds, &mut out);
         out
     }
 
@@ -150,7 +151,13 @@ impl GoalDescent<'_, '_> {
     fn place(&mut self, q: Point) -> TaskPoint {
         let mut gradient = q.clone();
         let cost = self.goals.cost(self.robot, self.space, &q, &mut gradient);
+        self.bounds.steepest(&mut gradient);
         TaskPoint { q, cost, gradient }
+    }
+
+    /// Inner product of two motions, by the weights of the joints.
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.bounds.weights().map_or_else(|| dot(a, b), |weights| weights.dot(a, b))
     }
 }
 

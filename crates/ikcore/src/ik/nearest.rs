@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use super::attempt::Attempt;
+use super::goal_descent::difference;
 use super::solution::Solution;
 use super::whole_turns::bring_near;
-use crate::math::vector::distance;
+use crate::math::vector::norm;
 use crate::objective::{Bounds, Point};
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::Status;
-use crate::task::{Goal, Goals};
 
 /// Consecutive solutions without improvement after which the search ends.
 const PATIENCE: usize = 24;
@@ -22,8 +22,8 @@ const SAME: f64 = 1e-9;
 /// there is none.
 pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> Solution {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
-    let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
-    let mut goals = Goals::new(&[goal], robot, bounds);
+    let weights = attempt.context.weights();
+    let mut goals = attempt.context.distance_from(start);
     let mut nearest: Option<(f64, Point)> = None;
     let (mut x0, mut no_nearer) = (Point::from_slice(start), 0);
     let last = loop {
@@ -33,7 +33,8 @@ pub(super) fn nearest_solution(attempt: &mut Attempt<'_, '_>, start: &[f64]) -> 
         }
         bring_near(robot, bounds, start, &mut solution.q);
         attempt.descend_goals(&mut goals, &mut solution.q);
-        let distance = distance(&solution.q, start);
+        let way = difference(&solution.q, start);
+        let distance = weights.map_or_else(|| norm(&way), |weights| weights.dot(&way, &way).sqrt());
         if nearest.as_ref().is_none_or(|(least, _)| distance < least - SAME) {
             (nearest, no_nearer) = (Some((distance, solution.q.clone())), 0);
         } else {

@@ -49,7 +49,7 @@ struct JointPreference {
 }
 
 impl Preference {
-    /// Preference for configurations near `start`, with all joints weighted equally (rad, m); without one, near the middle of
+    /// Preference for configurations near `start`, by the weights of the box (rad, m); without one, near the middle of
     /// the limits, with joints weighted by their ranges.
     pub fn new(robot: &Robot, bounds: &Bounds, start: Option<&[f64]>) -> Self {
         let mut preference = Self { joints: SmallVec::new(), ranges: Default::default() };
@@ -57,7 +57,7 @@ impl Preference {
             let (lower, upper) = (bounds.lower()[j], bounds.upper()[j]);
             let (low, high) = joint.sampling_range_within(lower, upper);
             let (reference, weight) = match start {
-                Some(start) => (start[j], 1.0),
+                Some(start) => (start[j], bounds.weights().map_or(1.0, |weights| weights.as_slice()[j].powi(2))),
                 None => {
                     let range = high - low;
                     (0.5 * (low + high), if range > 0.0 { 1.0 / (range * range) } else { 0.0 })

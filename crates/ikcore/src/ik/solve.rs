@@ -3,9 +3,11 @@
 use super::attempt::Attempt;
 use super::best::best_solution;
 use super::budget::Budget;
+use super::cheapest_nearby::cheapest_nearby;
 use super::clear::clear_solution;
 use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
+use super::first_of_family::FamilySearch;
 use super::nearest::nearest_solution;
 use super::ranked::{ranked_at_once, ranked_solution};
 use super::solution::Solution;
@@ -21,6 +23,9 @@ use crate::task::Target;
 
 /// Number of joints that a pose needs.
 const POSE: usize = 6;
+
+/// Descents into the tolerances of a pose before its parts are ranked.
+const DESCENTS: usize = 5;
 
 /// Finds a configuration that brings the tip of `robot` to `target`.
 ///
@@ -116,7 +121,13 @@ fn first_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solut
     let at_once = by_closed_form(attempt, start).or_else(|| in_band_of_pose(attempt, start));
     let at_once = at_once.or_else(|| ranked_at_once(attempt, start));
     let mut solution = at_once.unwrap_or_else(|| searched_solution(attempt, start));
-    if solution.status != Status::Solved || context.goals().is_empty() {
+    if solution.status != Status::Solved {
+        return solution;
+    }
+    if let Some(start) = start.filter(|_| context.weights().is_some()) {
+        return cheapest_nearby(attempt, start, solution);
+    }
+    if context.goals().is_empty() {
         return solution;
     }
     if let Some(start) = start {
@@ -136,11 +147,23 @@ fn in_band_of_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Opti
     let branch = |attempt: &mut Attempt<'_, '_>| branch_in_band(attempt, pose, start);
     match start {
         Some(start) => descended(attempt, start).or_else(|| branch(attempt)),
-        None => branch(attempt).or_else(|| {
-            let x0 = attempt.first_start(None);
-            descended(attempt, &x0)
-        }),
+        None => branch(attempt).or_else(|| descended_from_scattered(attempt)),
     }
+}
+
+/// Returns the end of the first descent from a few scattered starts that is within the tolerances.
+fn descended_from_scattered(attempt: &mut Attempt<'_, '_>) -> Option<Solution> {
+    let mut x0 = attempt.first_start(None);
+    for descent in 0..DESCENTS {
+        if descent > 0 {
+            attempt.next_start(&mut x0);
+            attempt.budget.restarts += 1;
+        }
+        if let Some(found) = descended(attempt, &x0) {
+            return Some(found);
+        }
+    }
+    None
 }
 
 /// Returns the end of one descent from `x0`, if it is within the tolerances.
@@ -151,12 +174,15 @@ fn descended(attempt: &mut Attempt<'_, '_>, x0: &[f64]) -> Option<Solution> {
     }
 }
 
-/// Returns the preferred branch of `pose`, for an arm with as many joints as a pose needs.
+/// Returns the preferred branch of `pose`, for an arm with at least as many joints as a pose needs.
 fn branch_in_band(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f64]>) -> Option<Solution> {
     let context = attempt.context;
     let robot = context.robot();
-    if robot.dof() < POSE || robot.solves_at_once() != Some(true) || robot.family(pose).is_some() {
+    if robot.dof() < POSE || robot.solves_at_once() != Some(true) {
         return None;
+    }
+    if let Some(family) = robot.family(pose) {
+        return FamilySearch::new(context, &family, start).at_first_values(attempt);
     }
     let mut likely = ArmConfigurations::none();
     robot.likely_branches(pose, &mut likely);
@@ -167,6 +193,11 @@ fn branch_in_band(attempt: &mut Attempt<'_, '_>, pose: &Frame, start: Option<&[f
 /// Searches for a solution from the first start.
 fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Solution {
     let x0 = attempt.first_start(start);
+    if attempt.context.weights().is_some()
+        && let Some(solution) = descended(attempt, &x0)
+    {
+        return solution;
+    }
     match attempt.problem.only_target() {
         Some((target, _)) if attempt.context.comes_first(target).is_some() => attempt.solve_briefly_from(&x0),
         _ => attempt.solve_from(&x0),

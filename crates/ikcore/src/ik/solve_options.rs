@@ -38,6 +38,9 @@ pub struct SolveOptions {
     /// Start of the search (n,). `None` means the middle of the limits for a closed form, and the indexed configuration nearest
     /// to the target for a search.
     pub start: Option<Vec<f64>>,
+    /// Cost of moving each joint away from the start (n,), positive: of the solutions, the one is wanted with the least sum of
+    /// (weight * (q - start))^2. `None` means that all joints cost the same.
+    pub joint_weights: Option<Vec<f64>>,
     /// Tolerances within which the target counts as reached.
     pub tolerance: Tolerance,
     /// Position limits to keep. `None` means the robot's.

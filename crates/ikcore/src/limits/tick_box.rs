@@ -1,11 +1,14 @@
 //! The box of one tick: the position limits intersected with the range that the velocity limits allow from the accepted
 //! configuration.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::field::Field;
 use super::joint_limits::Limits;
 use super::profile::Profile;
+use crate::math::JointWeights;
 use crate::math::comparison::{larger, smaller};
 use crate::objective::{Bounds, Point};
 use crate::wording::words;
@@ -91,6 +94,11 @@ impl TickBox {
         let ranges = q.iter().zip(floor.iter().zip(&ceiling));
         let bounds = ranges.map(|(q, (floor, ceiling))| if lasting { (*floor, *ceiling) } else { (*q, *q) });
         Self { bounds: Bounds::from_ranges(bounds), velocity, floor, ceiling, varying, lasting }
+    }
+
+    /// The box with these weights of the joints.
+    pub(crate) fn weighted(self, weights: Option<Arc<JointWeights>>) -> Self {
+        Self { bounds: self.bounds.weighted(weights), ..self }
     }
 }
 

@@ -50,13 +50,18 @@ impl BlockStep<'_> {
     /// Writes the point in the box that (approximately) solves residual + J (out - x) = 0 and is nearest to `preferred`,
     /// which must be in the box.
     pub fn write_near(&self, preferred: &[f64], out: &mut [f64]) {
+        self.near(preferred, |step| step.write(out));
+    }
+
+    /// Calls `then` with the step from `preferred` that solves the same equations.
+    pub fn near(&self, preferred: &[f64], then: impl FnOnce(&BlockStep<'_>)) {
         let mut there: Remaining = self.tasks.iter().map(|task| *task.residual).collect();
         for (j, (x, preferred)) in self.x.iter().zip(preferred).enumerate() {
             shift(&mut there, self.tasks, j, preferred - x);
         }
         let tasks = self.tasks.iter().zip(&there).map(|(task, residual)| TaskRows { residual, ..*task });
         let tasks: SmallVec<[TaskRows<'_>; 8]> = tasks.collect();
-        BlockStep { tasks: &tasks, x: preferred, ..*self }.write(out);
+        then(&BlockStep { tasks: &tasks, x: preferred, ..*self });
     }
 
     /// Solves a system of at most `N` unknowns: all rows, or all entries of x.

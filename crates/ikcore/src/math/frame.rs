@@ -1,6 +1,7 @@
 //! Rigid transform in plain arrays, for the kernels.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 
 use super::arithmetic::Arithmetic;
 use super::f32x8::F32x8;
@@ -9,7 +10,7 @@ use super::{Pose, pose};
 
 /// Rigid transform: the columns of its rotation (its axes in base coordinates) and its origin (m). With `F64x4` entries it
 /// holds four transforms, one per lane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frame<T = f64> {
     /// Axes x, y and z.
     pub axes: [[T; 3]; 3],

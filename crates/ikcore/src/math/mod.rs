@@ -12,6 +12,7 @@
 //! | `columns` | columns of Jacobians |
 //! | `gram`, `ldl`, `banded`, `singular_values` | small linear systems, and banded ones |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
+//! | `joint_weights` | steps by the joints that cost least |
 //! | `ranked_step` | step for two objectives, one before the other |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
@@ -31,6 +32,7 @@ pub(crate) mod f64x4;
 mod frame;
 pub(crate) mod gram;
 pub(crate) mod hermite;
+mod joint_weights;
 mod knots;
 pub(crate) mod ldl;
 pub(crate) mod logarithm;
@@ -54,6 +56,7 @@ pub(crate) mod vector3;
 pub use arithmetic::instructions;
 pub use columns::Columns;
 pub use frame::Frame;
+pub use joint_weights::{JointWeights, StepBox};
 pub use knots::Knots;
 
 /// Largest number of independent joints, and of moving elements, of a robot.

@@ -1,11 +1,12 @@
 //! Construction of rigid transforms, and validation of 4x4 matrices.
 
+use std::f64::consts::PI;
 use std::fmt;
 
-use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::Pose;
-use crate::error::{Error, Result, require_finite};
+use crate::error::{Error, Result, given, require_finite};
 
 /// Largest deviation of R'R from the identity, entry by entry, for R to count as a rotation: that of three decimals.
 const ORTHOGONALITY_TOLERANCE: f64 = 2e-3;
@@ -34,8 +35,19 @@ pub fn translation(x: f64, y: f64, z: f64) -> Pose {
 
 /// Returns a pure rotation by `angle` (rad) about a unit `axis`.
 pub fn rotation(axis: Vector3<f64>, angle: f64) -> Pose {
-    let axis = nalgebra::Unit::new_unchecked(axis);
+    let axis = Unit::new_unchecked(axis);
     Pose::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&axis, angle))
+}
+
+/// Rotation by the smallest angle that makes `axis` point along `direction`, both of any length but zero.
+pub fn turning(axis: [f64; 3], direction: [f64; 3]) -> Pose {
+    let [axis, direction] = [axis, direction].map(Vector3::from);
+    let turn = Rotation3::rotation_between(&axis, &direction).unwrap_or_else(|| {
+        // Opposite to each other: half a turn about any axis across, here one far from both.
+        let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0));
+        Rotation3::from_axis_angle(&Unit::new_normalize(across), PI)
+    });
+    from_parts([0.0; 3], turn.into_inner())
 }
 
 /// Builds a transform from fixed-axis roll, pitch and yaw (rad), R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
@@ -178,7 +190,7 @@ fn fault_of_last_row(matrix: &Matrix4<f64>) -> Option<String> {
     if !off {
         return None;
     }
-    let row = last_row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let row = last_row.iter().map(|entry| given(*entry)).collect::<Vec<_>>().join(", ");
     let transposed = matrix.column(3).iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(entry, due)| *entry == due);
     let remedy = if transposed { ": transpose it, so that the position is its last column" } else { "" };
     Some(format!("its last row is ({row}), not (0, 0, 0, 1){remedy}"))

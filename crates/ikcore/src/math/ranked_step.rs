@@ -8,9 +8,10 @@ use smallvec::SmallVec;
 
 use super::MAX_DOF;
 use super::box_step::{BoxStep, ROWS, least_damping};
+use super::so3::{cross, dot as dot3};
 use super::vector::dot;
 
-/// Number of joints up to which nothing is allocated.
+/// Number of joints up to which small arrays are enough.
 const FEW: usize = 8;
 
 /// Number of equations.
@@ -25,11 +26,11 @@ const LONGEST: f64 = 0.5;
 /// Smallest curvature, relative to the largest entry, of a model that has a minimum.
 const FLAT: f64 = 1e-9;
 
-/// Entries of a point, on the stack up to eight joints.
-type Entries = SmallVec<[f64; FEW]>;
-
 /// Symmetric matrix by rows, on the stack up to eight joints.
-pub type Square = SmallVec<[f64; 64]>;
+pub type Square = SmallVec<[f64; FEW * FEW]>;
+
+/// Vectors of the joints, on the stack up to eight.
+type Vectors = SmallVec<[[f64; 3]; FEW]>;
 
 /// Second-order model of the objective of second rank.
 #[derive(Debug, Clone, Default)]
@@ -44,8 +45,10 @@ pub struct RankedModel {
     pub gradient: SmallVec<[f64; FEW]>,
     /// Second derivatives of the objective.
     pub hessian: Square,
-    /// Second derivatives of each equation.
-    pub bends: [Square; EQUATIONS],
+    /// Second derivatives of the equations by joints i and j, i not after j: `axes[i]` x `arms[j]`.
+    pub axes: Vectors,
+    /// See `axes`.
+    pub arms: Vectors,
 }
 
 /// Step from `x` in the box \[`lower`, `upper`\].
@@ -68,16 +71,31 @@ impl RankedModel {
     pub fn clear(&mut self, n: usize) {
         self.gradient.clear();
         self.gradient.resize(n, 0.0);
-        for matrix in std::iter::once(&mut self.hessian).chain(&mut self.bends) {
-            matrix.clear();
-            matrix.resize(n * n, 0.0);
+        self.hessian.clear();
+        self.hessian.resize(n * n, 0.0);
+        for vectors in [&mut self.axes, &mut self.arms] {
+            vectors.clear();
+            vectors.resize(n, [0.0; 3]);
         }
     }
 
-    /// Adds to both sides of the diagonal of a matrix of `n` columns.
+    /// Writes both entries of a symmetric matrix of `n` columns.
     pub fn set(matrix: &mut Square, n: usize, i: usize, j: usize, value: f64) {
         matrix[i * n + j] = value;
         matrix[j * n + i] = value;
+    }
+
+    /// Second derivatives of the objective plus those of the equations times `multipliers`.
+    fn curvature<const N: usize>(&self, n: usize, multipliers: &[f64; EQUATIONS]) -> [[f64; N]; N] {
+        let mut curvature = [[0.0; N]; N];
+        for i in 0..n {
+            let across = cross(multipliers, &self.axes[i]);
+            for j in i..n {
+                curvature[i][j] = self.hessian[i * n + j] + dot3(&across, &self.arms[j]);
+                curvature[j][i] = curvature[i][j];
+            }
+        }
+        curvature
     }
 }
 
@@ -85,236 +103,281 @@ impl RankedStep<'_> {
     /// Writes the point after the step into `out`, and returns the multipliers of the equations.
     pub fn write(&self, out: &mut [f64]) -> [f64; EQUATIONS] {
         self.write_first(out);
-        self.write_second(out)
+        if self.x.len() <= FEW { self.write_second::<FEW>(out) } else { self.write_second::<MAX_DOF>(out) }
     }
 
     /// Writes the point nearest to `x` that solves the equations.
     pub fn write_first(&self, out: &mut [f64]) {
+        if self.x.len() <= FEW { self.write_least::<FEW>(out) } else { self.write_least::<MAX_DOF>(out) }
+    }
+
+    fn write_least<const N: usize>(&self, out: &mut [f64]) {
         let n = self.x.len();
-        let (mut columns, mut residual) = (SmallVec::<[[f64; ROWS]; FEW]>::new(), [0.0; ROWS]);
+        let (mut columns, mut residual) = ([[0.0; ROWS]; N], [0.0; ROWS]);
+        let row = self.model.first_row;
         // The position rows come first in a step that has no others.
-        columns.extend(self.columns[..n].iter().map(|column| {
-            let [x, y, z] = self.equations(column);
-            [x, y, z, 0.0, 0.0, 0.0]
-        }));
+        for (own, column) in columns.iter_mut().zip(&self.columns[..n]) {
+            own[..EQUATIONS].copy_from_slice(&column[row..row + EQUATIONS]);
+        }
         residual[..EQUATIONS].copy_from_slice(&self.model.residual);
-        let (columns, residual) = (&columns[..], &residual);
+        let (columns, residual) = (&columns[..n], &residual);
         let lambda = least_damping(columns);
         BoxStep { columns, residual, lambda, x: self.x, lower: self.lower, upper: self.upper }.write(out);
     }
 
-    fn equations(&self, column: &[f64; ROWS]) -> [f64; EQUATIONS] {
-        std::array::from_fn(|k| column[self.model.first_row + k])
-    }
-
     /// Moves `out`, which solves the equations, along their null space.
-    fn write_second(&self, out: &mut [f64]) -> [f64; EQUATIONS] {
+    fn write_second<const N: usize>(&self, out: &mut [f64]) -> [f64; EQUATIONS] {
         let n = self.x.len();
         let mut free: u64 = if n == MAX_DOF { u64::MAX } else { (1 << n) - 1 };
-        let mut multipliers = None;
+        let mut known = None;
         while free != 0 {
-            let gradient = self.gradient_at(out);
-            let rows = EquationBasis::of(self, free);
-            let of_equations = *multipliers.get_or_insert_with(|| rows.multipliers(&gradient));
+            let gradient = self.gradient_at::<N>(out);
+            let rows = EquationBasis::<N>::of(self, free);
+            let (multipliers, curvature) = known.get_or_insert_with(|| {
+                let multipliers = rows.multipliers(&gradient, n);
+                (multipliers, self.model.curvature::<N>(n, &multipliers))
+            });
+            let multipliers = *multipliers;
             let null = rows.complement(free, n);
-            let Some(direction) = self.newton(&null, &gradient, &of_equations) else { break };
-            let mut reach = 1.0;
-            let mut blocking = 0_u64;
-            for (j, way) in direction.iter().enumerate().filter(|(j, way)| free & (1 << j) != 0 && **way != 0.0) {
-                let room = if *way > 0.0 { self.upper[j] - out[j] } else { self.lower[j] - out[j] };
-                let part = (room / way).max(0.0);
-                if part < reach {
-                    (reach, blocking) = (part, 1 << j);
-                } else if part == reach && blocking != 0 {
-                    blocking |= 1 << j;
-                }
-            }
-            for (j, way) in direction.iter().enumerate() {
-                let bound = if *way > 0.0 { self.upper[j] } else { self.lower[j] };
-                let at_bound = blocking & (1 << j) != 0;
-                let moved = (out[j] + reach * way).clamp(self.lower[j], self.upper[j]);
-                out[j] = if at_bound { bound } else { moved };
-            }
+            let Some(direction) = newton(n, &null, &gradient, curvature) else { return multipliers };
+            let blocking = self.move_along(&direction[..n], free, out);
             if blocking == 0 {
-                break;
+                return multipliers;
             }
             free &= !blocking;
         }
-        multipliers.unwrap_or([0.0; EQUATIONS])
+        known.map_or([0.0; EQUATIONS], |(multipliers, _)| multipliers)
+    }
+
+    /// Moves the `free` joints of `out` along `direction` until the first reaches its bound; returns those that do.
+    fn move_along(&self, direction: &[f64], free: u64, out: &mut [f64]) -> u64 {
+        let (mut reach, mut blocking) = (1.0, 0_u64);
+        for (j, way) in direction.iter().enumerate().filter(|(j, way)| free & (1 << j) != 0 && **way != 0.0) {
+            let room = if *way > 0.0 { self.upper[j] - out[j] } else { self.lower[j] - out[j] };
+            let part = (room / way).max(0.0);
+            if part < reach {
+                (reach, blocking) = (part, 1 << j);
+            } else if part == reach && blocking != 0 {
+                blocking |= 1 << j;
+            }
+        }
+        for (j, way) in direction.iter().enumerate() {
+            let bound = if *way > 0.0 { self.upper[j] } else { self.lower[j] };
+            let at_bound = blocking & (1 << j) != 0;
+            let moved = (out[j] + reach * way).clamp(self.lower[j], self.upper[j]);
+            out[j] = if at_bound { bound } else { moved };
+        }
+        blocking
     }
 
     /// Gradient of the model at `out`.
-    fn gradient_at(&self, out: &[f64]) -> Entries {
+    fn gradient_at<const N: usize>(&self, out: &[f64]) -> [f64; N] {
         let n = self.x.len();
-        let change: Entries = out.iter().zip(self.x).map(|(out, x)| out - x).collect();
-        let rows = self.model.hessian.chunks_exact(n).zip(&self.model.gradient);
-        rows.map(|(row, slope)| slope + dot(row, &change)).collect()
+        let (mut change, mut gradient) = ([0.0; N], [0.0; N]);
+        (0..n).for_each(|j| change[j] = out[j] - self.x[j]);
+        for (i, row) in self.model.hessian.chunks_exact(n).enumerate() {
+            gradient[i] = self.model.gradient[i] + dot(row, &change[..n]);
+        }
+        gradient
     }
+}
 
-    /// Step along the null space to the minimum of the model, or downhill where it has none; `None` without a null space.
-    fn newton(&self, null: &[Entries], gradient: &[f64], multipliers: &[f64; EQUATIONS]) -> Option<Entries> {
-        if null.is_empty() {
-            return None;
-        }
-        let (n, m) = (self.x.len(), null.len());
-        let RankedModel { hessian, bends, .. } = self.model;
-        let curved = |i: usize, j: usize| {
-            let bend = multipliers.iter().zip(bends).map(|(multiplier, bend)| multiplier * bend[i * n + j]);
-            hessian[i * n + j] + bend.sum::<f64>()
-        };
-        let mut reduced = Square::from_elem(0.0, m * m);
-        for (b, vector) in null.iter().enumerate() {
-            let image: Entries =
-                (0..n).map(|i| (0..n).filter(|j| vector[*j] != 0.0).map(|j| curved(i, j) * vector[j]).sum()).collect();
-            for (a, other) in null.iter().enumerate().take(b + 1) {
-                RankedModel::set(&mut reduced, m, a, b, dot(other, &image));
-            }
-        }
-        let right: Entries = null.iter().map(|vector| -dot(vector, gradient)).collect();
-        let parts = downhill(&reduced, &right);
-        let mut direction = Entries::from_elem(0.0, n);
-        for (part, vector) in parts.iter().zip(null) {
-            direction.iter_mut().zip(vector).for_each(|(way, entry)| *way += part * entry);
-        }
-        let longest = direction.iter().fold(0.0, |most: f64, way| most.max(way.abs()));
-        if longest > LONGEST {
-            direction.iter_mut().for_each(|way| *way *= LONGEST / longest);
-        }
-        Some(direction)
+/// Orthonormal basis of the free directions that leave the equations unchanged.
+struct NullSpace<const N: usize> {
+    vectors: [[f64; N]; N],
+    count: usize,
+}
+
+/// Step along the null space to the minimum of the model, or downhill where it has none; `None` without a null space.
+fn newton<const N: usize>(
+    n: usize,
+    null: &NullSpace<N>,
+    gradient: &[f64; N],
+    curvature: &[[f64; N]; N],
+) -> Option<[f64; N]> {
+    let m = null.count;
+    if m == 0 {
+        return None;
     }
+    let (mut reduced, mut right) = ([[0.0; N]; N], [0.0; N]);
+    for (b, vector) in null.vectors[..m].iter().enumerate() {
+        let mut image = [0.0; N];
+        (0..n).for_each(|i| image[i] = dot(&curvature[i][..n], &vector[..n]));
+        for (a, other) in null.vectors[..=b].iter().enumerate() {
+            reduced[a][b] = dot(&other[..n], &image[..n]);
+            reduced[b][a] = reduced[a][b];
+        }
+        right[b] = -dot(&vector[..n], &gradient[..n]);
+    }
+    let parts = downhill(&reduced, &right, m);
+    let mut direction = [0.0; N];
+    for (part, vector) in parts[..m].iter().zip(&null.vectors) {
+        (0..n).for_each(|j| direction[j] += part * vector[j]);
+    }
+    let longest = direction[..n].iter().fold(0.0, |most: f64, way| most.max(way.abs()));
+    if longest > LONGEST {
+        direction[..n].iter_mut().for_each(|way| *way *= LONGEST / longest);
+    }
+    Some(direction)
 }
 
 /// Orthonormal basis of the equations' gradients over the free joints, and the gradients in it.
-struct EquationBasis {
-    basis: SmallVec<[Entries; EQUATIONS]>,
-    /// Equations in the order of the basis, each with its components along it.
-    parts: SmallVec<[(usize, [f64; EQUATIONS]); EQUATIONS]>,
+struct EquationBasis<const N: usize> {
+    basis: [[f64; N]; EQUATIONS],
+    /// Equations in the order of the basis.
+    order: [usize; EQUATIONS],
+    /// Components of each equation along the basis.
+    along: [[f64; EQUATIONS]; EQUATIONS],
+    count: usize,
 }
 
-impl EquationBasis {
+impl<const N: usize> EquationBasis<N> {
     /// Orthogonalises the gradients, the longest remainder first.
     fn of(step: &RankedStep<'_>, free: u64) -> Self {
         let n = step.x.len();
-        let mut found = Self { basis: SmallVec::new(), parts: SmallVec::new() };
-        let entry = |k: usize, j: usize| {
-            if free & (1 << j) != 0 { step.columns[j][step.model.first_row + k] } else { 0.0 }
-        };
-        let mut rest: SmallVec<[Entries; EQUATIONS]> =
-            (0..EQUATIONS).map(|k| (0..n).map(|j| entry(k, j)).collect()).collect();
-        let mut along = [[0.0; EQUATIONS]; EQUATIONS];
-        let mut left: SmallVec<[usize; EQUATIONS]> = (0..EQUATIONS).collect();
-        let mut longest = 0.0;
-        while let Some(place) = (0..left.len()).max_by(|a, b| {
-            let length = |place: usize| dot(&rest[left[place]], &rest[left[place]]);
-            length(*a).total_cmp(&length(*b))
-        }) {
-            let k = left.remove(place);
-            let length = dot(&rest[k], &rest[k]).sqrt();
-            longest = if found.basis.is_empty() { length } else { longest };
-            if length <= DEPENDENT * longest {
+        let mut found =
+            Self { basis: [[0.0; N]; EQUATIONS], order: [0, 1, 2], along: [[0.0; EQUATIONS]; EQUATIONS], count: 0 };
+        let mut rest = [[0.0; N]; EQUATIONS];
+        for j in (0..n).filter(|j| free & (1 << j) != 0) {
+            (0..EQUATIONS).for_each(|k| rest[k][j] = step.columns[j][step.model.first_row + k]);
+        }
+        let mut first = 0.0;
+        for s in 0..EQUATIONS {
+            let mut longest = (-1.0, s);
+            for place in s..EQUATIONS {
+                let square = squared(&rest[found.order[place]][..n]);
+                if square >= longest.0 {
+                    longest = (square, place);
+                }
+            }
+            let length = longest.0.sqrt();
+            first = if s == 0 { length } else { first };
+            if !(length > DEPENDENT * first) {
                 break;
             }
-            let unit: Entries = rest[k].iter().map(|entry| entry / length).collect();
-            along[k][found.basis.len()] = length;
-            for other in &left {
-                let part = dot(&rest[*other], &unit);
-                along[*other][found.basis.len()] = part;
-                rest[*other].iter_mut().zip(&unit).for_each(|(entry, unit)| *entry -= part * unit);
+            found.order.swap(s, longest.1);
+            let k = found.order[s];
+            let unit = &mut found.basis[s];
+            (0..n).for_each(|j| unit[j] = rest[k][j] / length);
+            found.along[k][s] = length;
+            for other in &found.order[s + 1..] {
+                found.along[*other][s] = removed(&unit[..n], &mut rest[*other][..n]);
             }
-            found.parts.push((k, along[k]));
-            found.basis.push(unit);
+            found.count += 1;
         }
         found
     }
 
     /// Multipliers that balance `gradient` as far as the equations can.
-    fn multipliers(&self, gradient: &[f64]) -> [f64; EQUATIONS] {
+    fn multipliers(&self, gradient: &[f64; N], n: usize) -> [f64; EQUATIONS] {
         let mut multipliers = [0.0; EQUATIONS];
-        for s in (0..self.basis.len()).rev() {
-            let later: f64 = self.parts[s + 1..].iter().map(|(k, along)| multipliers[*k] * along[s]).sum();
-            let (k, along) = &self.parts[s];
-            multipliers[*k] = (-dot(&self.basis[s], gradient) - later) / along[s];
+        for s in (0..self.count).rev() {
+            let later = &self.order[s + 1..self.count];
+            let later: f64 = later.iter().map(|k| multipliers[*k] * self.along[*k][s]).sum();
+            let k = self.order[s];
+            multipliers[k] = (-dot(&self.basis[s][..n], &gradient[..n]) - later) / self.along[k][s];
         }
         multipliers
     }
 
     /// Orthonormal basis of the free directions that leave the equations unchanged.
-    fn complement(&self, free: u64, n: usize) -> SmallVec<[Entries; 4]> {
-        let count = (free.count_ones() as usize).saturating_sub(self.basis.len());
-        let mut found: SmallVec<[Entries; 4]> = SmallVec::new();
-        let mut rests: SmallVec<[Entries; FEW]> = SmallVec::new();
+    fn complement(&self, free: u64, n: usize) -> NullSpace<N> {
+        let mut found = NullSpace { vectors: [[0.0; N]; N], count: 0 };
+        let count = (free.count_ones() as usize).saturating_sub(self.count);
+        let mut rests = [[0.0; N]; N];
         for j in (0..n).filter(|j| free & (1 << j) != 0) {
-            let mut rest = Entries::from_elem(0.0, n);
-            rest[j] = 1.0;
-            self.basis.iter().for_each(|unit| remove(unit, &mut rest));
-            rests.push(rest);
+            rests[j][j] = 1.0;
+            for unit in &self.basis[..self.count] {
+                (0..n).for_each(|i| rests[j][i] -= unit[j] * unit[i]);
+            }
         }
-        while found.len() < count {
-            let length = |rest: &Entries| dot(rest, rest);
-            let Some(mut next) = rests.iter().max_by(|a, b| length(a).total_cmp(&length(b))).cloned() else { break };
+        while found.count < count {
+            let mut longest = (0.0, 0);
+            for (j, rest) in rests[..n].iter().enumerate() {
+                let square = squared(&rest[..n]);
+                if square >= longest.0 {
+                    longest = (square, j);
+                }
+            }
+            let mut next = rests[longest.1];
             // Twice is enough to be orthogonal to rounding.
-            self.basis.iter().chain(&found).for_each(|unit| remove(unit, &mut next));
-            let size = dot(&next, &next).sqrt();
-            if size < DEPENDENT {
+            for unit in self.basis[..self.count].iter().chain(&found.vectors[..found.count]) {
+                removed(&unit[..n], &mut next[..n]);
+            }
+            let size = squared(&next[..n]).sqrt();
+            if !(size >= DEPENDENT) {
                 break;
             }
-            next.iter_mut().for_each(|entry| *entry /= size);
-            rests.iter_mut().for_each(|rest| remove(&next, rest));
-            found.push(next);
+            next[..n].iter_mut().for_each(|entry| *entry /= size);
+            found.vectors[found.count] = next;
+            found.count += 1;
+            if found.count < count {
+                rests[..n].iter_mut().for_each(|rest| {
+                    removed(&next[..n], &mut rest[..n]);
+                });
+            }
         }
         found
     }
 }
 
-/// Removes the part of `from` along `unit`.
-fn remove(unit: &[f64], from: &mut [f64]) {
-    let part = dot(unit, from);
-    from.iter_mut().zip(unit).for_each(|(entry, unit)| *entry -= part * unit);
+fn squared(v: &[f64]) -> f64 {
+    dot(v, v)
 }
 
-/// Solves A z = b after raising the diagonal of A until it is positive definite, so that z leads downhill.
-fn downhill(matrix: &[f64], right: &[f64]) -> Entries {
-    let m = right.len();
-    let largest = matrix.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+/// Removes the part of `from` along `unit`, and returns it.
+fn removed(unit: &[f64], from: &mut [f64]) -> f64 {
+    let part = dot(unit, from);
+    from.iter_mut().zip(unit).for_each(|(entry, unit)| *entry -= part * unit);
+    part
+}
+
+/// Solves A z = b for `m` unknowns after raising the diagonal of A until it is positive definite, so that z leads downhill.
+fn downhill<const N: usize>(matrix: &[[f64; N]; N], right: &[f64; N], m: usize) -> [f64; N] {
+    let rows = || matrix[..m].iter().flat_map(|row| &row[..m]);
+    let largest = rows().fold(0.0, |most: f64, entry| most.max(entry.abs()));
     let mut shift = 0.0;
     loop {
-        if let Some(solved) = cholesky(matrix, shift, FLAT * largest, right) {
+        if let Some(solved) = cholesky(matrix, shift, FLAT * largest, right, m) {
             return solved;
         }
         if largest == 0.0 || !largest.is_finite() {
-            return Entries::from_elem(0.0, m);
+            return [0.0; N];
         }
         shift = if shift == 0.0 { 0.1 * largest } else { 4.0 * shift };
     }
 }
 
-/// Solves (A + shift I) z = b by Cholesky's method; `None` where a pivot is not above `least`.
-fn cholesky(matrix: &[f64], shift: f64, least: f64, right: &[f64]) -> Option<Entries> {
-    let m = right.len();
-    let mut lower = Square::from_elem(0.0, m * m);
+/// Solves (A + shift I) z = b for `m` unknowns by Cholesky's method; `None` where a pivot is not above `least`.
+fn cholesky<const N: usize>(
+    matrix: &[[f64; N]; N],
+    shift: f64,
+    least: f64,
+    right: &[f64; N],
+    m: usize,
+) -> Option<[f64; N]> {
+    let mut lower = [[0.0; N]; N];
     for i in 0..m {
         for j in 0..=i {
-            let known: f64 = (0..j).map(|k| lower[i * m + k] * lower[j * m + k]).sum();
-            let entry = matrix[i * m + j] - known;
+            let entry = matrix[i][j] - dot(&lower[i][..j], &lower[j][..j]);
             if i == j {
                 let pivot = entry + shift;
                 if !(pivot > least) {
                     return None;
                 }
-                lower[i * m + i] = pivot.sqrt();
+                lower[i][i] = pivot.sqrt();
             } else {
-                lower[i * m + j] = entry / lower[j * m + j];
+                lower[i][j] = entry / lower[j][j];
             }
         }
     }
-    let mut z = Entries::from_slice(right);
+    let mut z = *right;
     for i in 0..m {
-        let known: f64 = (0..i).map(|k| lower[i * m + k] * z[k]).sum();
-        z[i] = (z[i] - known) / lower[i * m + i];
+        z[i] = (z[i] - dot(&lower[i][..i], &z[..i])) / lower[i][i];
     }
     for i in (0..m).rev() {
-        let known: f64 = (i + 1..m).map(|k| lower[k * m + i] * z[k]).sum();
-        z[i] = (z[i] - known) / lower[i * m + i];
+        let known: f64 = (i + 1..m).map(|k| lower[k][i] * z[k]).sum();
+        z[i] = (z[i] - known) / lower[i][i];
     }
     Some(z)
 }

@@ -24,6 +24,8 @@ pub enum Setting {
     TaskOfEachTip,
     /// Preferred solution: "nearest" or "best".
     Prefer(&'static str),
+    /// Weights of the joints: the cost of moving each.
+    JointWeights,
     /// Solutions at all whole turns.
     AllTurns,
     /// Error for an invalid item of a batch.
@@ -96,6 +98,7 @@ impl fmt::Display for Setting {
             Self::Tip => "its tip",
             Self::OneTask => "one task for all tips",
             Self::TaskOfEachTip => "each of several tips has a task of its own",
+            Self::JointWeights => "weights of joints",
             Self::AllTurns => "taking all whole turns",
             Self::RaiseInvalid => "make invalid items an error",
             Self::Ease => "an eased start",

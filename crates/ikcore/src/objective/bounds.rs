@@ -1,21 +1,33 @@
 //! Box of a search.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use crate::error::{Error, Result};
 use crate::math::comparison::{larger, smaller};
 use crate::math::sampling_range;
 use crate::rng::LazyRng;
 
 use super::point::Point;
+use crate::math::{JointWeights, StepBox};
 
-/// Box with lower <= upper in every entry; infinite bounds are allowed.
+/// Box with lower <= upper in every entry; infinite bounds are allowed. Steps in it may have a weight for each joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     lower: Point,
     upper: Point,
+    weights: Option<Arc<JointWeights>>,
 }
 
 /// Sampling range on an unbounded side.
 const HALF_TURN: f64 = std::f64::consts::PI;
+
+impl<'a> From<&'a Bounds> for StepBox<'a> {
+    #[inline]
+    fn from(bounds: &'a Bounds) -> Self {
+        Self { lower: &bounds.lower, upper: &bounds.upper, weights: bounds.weights.as_deref() }
+    }
+}
 
 impl Bounds {
     /// Box between these bounds.
@@ -31,18 +43,43 @@ impl Bounds {
             Some(i) => {
                 Err(Error::out_of_range(format!("lower[{i}]"), format!("at most upper[{i}] = {}", upper[i]), lower[i]))
             }
-            None => Ok(Self { lower: lower.into(), upper: upper.into() }),
+            None => Ok(Self { lower: lower.into(), upper: upper.into(), weights: None }),
         }
     }
 
     /// Box of these (lower, upper) pairs, without checks.
     pub(crate) fn from_ranges(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut bounds = Self { lower: Point::new(), upper: Point::new() };
+        let mut bounds = Self { lower: Point::new(), upper: Point::new(), weights: None };
         for (lower, upper) in ranges {
             bounds.lower.push(lower);
             bounds.upper.push(upper);
         }
         bounds
+    }
+
+    /// The box with these weights of the joints.
+    pub(crate) fn weighted(self, weights: Option<Arc<JointWeights>>) -> Self {
+        Self { weights, ..self }
+    }
+
+    /// The box without weights of the joints.
+    pub(crate) fn without_weights(&self) -> Cow<'_, Self> {
+        match self.weights {
+            None => Cow::Borrowed(self),
+            Some(_) => Cow::Owned(self.clone().weighted(None)),
+        }
+    }
+
+    /// Weights of the joints; `None` where all cost the same.
+    pub(crate) fn weights(&self) -> Option<&Arc<JointWeights>> {
+        self.weights.as_ref()
+    }
+
+    /// Turns a gradient into the direction of steepest ascent by the weights of the joints.
+    pub(crate) fn steepest(&self, gradient: &mut [f64]) {
+        if let Some(weights) = &self.weights {
+            weights.steepest(gradient);
+        }
     }
 
     /// Lower bounds.

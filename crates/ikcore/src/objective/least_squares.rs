@@ -7,7 +7,7 @@ use super::gradient::Gradient;
 use crate::math::block_step::{BlockStep, TaskRows};
 use crate::math::box_step::{BoxStep, LEAST_DAMPING, ROWS};
 use crate::math::vector::squared_size;
-use crate::math::{Columns, MAX_DOF};
+use crate::math::{Columns, MAX_DOF, StepBox};
 
 /// Residual r and Jacobian dr/dx of one task at a point.
 #[derive(Debug, Clone, Default)]
@@ -59,56 +59,54 @@ impl Linearization {
         self.blocks().for_each(|block| block.add_gradient(gradient));
     }
 
-    /// Writes the [bounded step](BoxStep) from `x` in the box \[`lower`, `upper`\] into `out`.
+    /// Writes the [bounded step](BoxStep) from `x` in a box into `out`, by the joints that cost least.
     #[inline]
-    pub fn write_step(&self, lambda: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
+    pub fn write_step<'b>(&self, lambda: f64, x: &[f64], within: impl Into<StepBox<'b>>, out: &mut [f64]) {
         if self.more.is_empty() {
-            let TaskBlock { columns, residual } = &self.first;
-            BoxStep { columns, residual, lambda, x, lower, upper }.write(out);
+            self.first.write_step(lambda, x, within, out);
         } else {
-            self.write_step_of_several(lambda, x, [lower, upper], out);
+            self.write_step_of_several(lambda, x, within.into(), out);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn write_step_of_several(&self, lambda: f64, x: &[f64], [lower, upper]: [&[f64]; 2], out: &mut [f64]) {
-        BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write(out);
+    fn write_step_of_several(&self, lambda: f64, x: &[f64], within: StepBox<'_>, out: &mut [f64]) {
+        write_by_weights(&self.rows(), lambda, x, within, out);
     }
 
-    /// Writes the point in the box \[`lower`, `upper`\] that (nearly) solves r + J (out - x) = 0 and is nearest to `preferred`, which
-    /// must be in the box.
-    pub fn write_step_near(
+    /// Writes the point in a box that (nearly) solves r + J (out - x) = 0 and is nearest to `preferred`, which must be in the box.
+    pub fn write_step_near<'b>(
         &self,
         preferred: &[f64],
         lambda: f64,
         x: &[f64],
-        [lower, upper]: [&[f64]; 2],
+        within: impl Into<StepBox<'b>>,
         out: &mut [f64],
     ) {
         if self.more.is_empty() {
-            let TaskBlock { columns, residual } = &self.first;
-            BoxStep { columns, residual, lambda, x, lower, upper }.write_near(preferred, out);
+            self.first.write_step_near(preferred, lambda, x, within, out);
         } else {
-            BlockStep { tasks: &self.rows(), lambda, x, lower, upper }.write_near(preferred, out);
+            write_near_by_weights(&self.rows(), preferred, lambda, x, within.into(), out);
         }
     }
 
     /// Moves `q` onto a task by Gauss-Newton: up to `most` bounded steps. `next` linearizes the task at a point and returns the
     /// damping of the step from there, `None` to end. Returns whether it ended so.
-    pub fn project(
+    pub fn project<'b>(
         &mut self,
         q: &mut [f64],
-        ends: [&[f64]; 2],
+        within: impl Into<StepBox<'b>>,
         most: usize,
         mut next: impl FnMut(&[f64], &mut Self) -> Option<f64>,
     ) -> bool {
+        let within = within.into();
         let mut from = [0.0; MAX_DOF];
         let from = &mut from[..q.len()];
         for _ in 0..most {
             let Some(lambda) = next(q, self) else { return true };
             from.copy_from_slice(q);
-            self.write_step(lambda, from, ends, q);
+            self.write_step(lambda, from, within, q);
         }
         false
     }
@@ -125,6 +123,37 @@ impl Linearization {
 }
 
 impl TaskBlock {
+    /// Writes the step for this task alone, as [`Linearization::write_step`].
+    #[inline]
+    pub fn write_step<'b>(&self, lambda: f64, x: &[f64], within: impl Into<StepBox<'b>>, out: &mut [f64]) {
+        let Self { columns, residual } = self;
+        match within.into() {
+            StepBox { lower, upper, weights: None } => {
+                BoxStep { columns, residual, lambda, x, lower, upper }.write(out)
+            }
+            within => write_by_weights(&[TaskRows { columns, residual }], lambda, x, within, out),
+        }
+    }
+
+    /// Writes the step for this task alone, as [`Linearization::write_step_near`].
+    #[inline]
+    pub fn write_step_near<'b>(
+        &self,
+        preferred: &[f64],
+        lambda: f64,
+        x: &[f64],
+        within: impl Into<StepBox<'b>>,
+        out: &mut [f64],
+    ) {
+        let Self { columns, residual } = self;
+        match within.into() {
+            StepBox { lower, upper, weights: None } => {
+                BoxStep { columns, residual, lambda, x, lower, upper }.write_near(preferred, out);
+            }
+            within => write_near_by_weights(&[TaskRows { columns, residual }], preferred, lambda, x, within, out),
+        }
+    }
+
     /// Adds J'r to `gradient`.
     fn add_gradient(&self, gradient: &mut [f64]) {
         for (slope, column) in gradient.iter_mut().zip(&*self.columns) {
@@ -137,3 +166,30 @@ impl TaskBlock {
 pub trait Differentiable: LeastSquares + Gradient {}
 
 impl<O: LeastSquares + Gradient + ?Sized> Differentiable for O {}
+
+/// Writes the step of `tasks` by the weights of the box.
+fn write_by_weights(tasks: &[TaskRows<'_>], lambda: f64, x: &[f64], within: StepBox<'_>, out: &mut [f64]) {
+    let StepBox { lower, upper, weights } = within;
+    let step = BlockStep { tasks, lambda, x, lower, upper };
+    match weights {
+        None => step.write(out),
+        Some(weights) => weights.write(&step, out),
+    }
+}
+
+/// Writes the step of `tasks` that ends near `preferred` by the weights of the box.
+fn write_near_by_weights(
+    tasks: &[TaskRows<'_>],
+    preferred: &[f64],
+    lambda: f64,
+    x: &[f64],
+    within: StepBox<'_>,
+    out: &mut [f64],
+) {
+    let StepBox { lower, upper, weights } = within;
+    let step = BlockStep { tasks, lambda, x, lower, upper };
+    match weights {
+        None => step.write_near(preferred, out),
+        Some(weights) => step.near(preferred, |step| weights.write(step, out)),
+    }
+}

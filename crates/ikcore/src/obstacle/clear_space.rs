@@ -46,6 +46,14 @@ impl Surroundings {
 }
 
 impl<'a> ClearSpace<'a> {
+    /// The space of a robot around which nothing is.
+    ///
+    /// # Errors
+    /// Those of [`Scene::empty`].
+    pub(crate) fn empty(robot: impl Into<SceneRobot<'a>>) -> Result<Self> {
+        Ok(Self { scene: Scene::empty(robot)?, margin: 0.0 })
+    }
+
     /// The space in which everything keeps `more` (m) beyond the margin.
     pub(crate) fn narrowed(&self, more: f64) -> Self {
         Self { scene: self.scene.clone(), margin: self.margin + more }

@@ -36,25 +36,37 @@ pub(super) fn displacement(
 /// A bound (m) on how far any point of `body` gets from the straight line between its places at both ends of a joint motion, from the
 /// configuration of `frames` and `body` on. The joints change by `change` (rad, m) in all, and get off the straight line between both
 /// configurations by `off_line` at most.
-///
+pub(super) fn sagitta(robot: &Robot, frames: &[Frame], body: &PosedBody, frame: usize, change: [&[f64]; 2]) -> f64 {
+    let [start, end] = body.axis;
+    let beside_axis = if body.solid.is_some() { body.radius } else { 0.0 };
+    let farthest = |motion: &Transmission, axis: &Frame| lever(motion, axis, start).max(lever(motion, axis, end));
+    sagitta_by(robot.carriers(frame, 0), |motion, number| farthest(motion, &frames[number]) + beside_axis, change)
+}
+
+/// [`sagitta`] of `point` (m), carried by these elements, the outermost first, each with the number of its frame.
+pub(crate) fn sagitta_along<'a>(
+    carriers: impl Iterator<Item = (usize, &'a Transmission)>,
+    frames: &[Frame],
+    point: &[f64; 3],
+    change: [&[f64]; 2],
+) -> f64 {
+    let point = Vector3::from(*point);
+    sagitta_by(carriers, |motion, number| lever(motion, &frames[number], &point), change)
+}
+
 /// Along a straight line in joint space, p(s) with s from 0 to 1, a rotation by t_k about axis k accelerates a point at distance l_k
 /// from it by t_k^2 l_k, and the rotation by t_i about an axis i nearer to the base turns its velocity t_k l_k by t_i: once on either
 /// side. A curve with |p''| <= b is within b / 8 of its chord. A rotation vector that changes by t accelerates a point at distance l
 /// from its origin by |t|^2 l at most, which is no more.
-pub(super) fn sagitta(
-    robot: &Robot,
-    frames: &[Frame],
-    body: &PosedBody,
-    frame: usize,
+fn sagitta_by<'a>(
+    carriers: impl Iterator<Item = (usize, &'a Transmission)>,
+    lever: impl Fn(&Transmission, usize) -> f64,
     [change, off_line]: [&[f64]; 2],
 ) -> f64 {
-    let [start, end] = body.axis;
-    let beside_axis = if body.solid.is_some() { body.radius } else { 0.0 };
     let (mut moved, mut outer_velocity, mut bend, mut off) = (0.0, 0.0, 0.0, 0.0);
-    for (number, motion) in robot.carriers(frame, 0) {
-        let ([turn, slide], axis) = (motion.travel(change), &frames[number]);
-        let [off_turn, off_slide] = motion.travel(off_line);
-        let lever = lever(motion, axis, start).max(lever(motion, axis, end)) + beside_axis + moved;
+    for (number, motion) in carriers {
+        let ([turn, slide], [off_turn, off_slide]) = (motion.travel(change), motion.travel(off_line));
+        let lever = lever(motion, number) + moved;
         bend += turn * (turn * lever + 2.0 * outer_velocity);
         off += off_turn * lever + off_slide;
         outer_velocity += turn * lever + slide;

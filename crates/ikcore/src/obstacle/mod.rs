@@ -56,6 +56,7 @@ pub use clearance_sweep::{ClearanceSweep, TooNear};
 pub(crate) use coming_rows::{Coming, ComingRows, MOST_COMING};
 pub use contact::{Contact, NearestContact, Neighbor};
 pub use joint_motion::{Edge, JointMotion};
+pub(crate) use link_displacement::sagitta_along;
 pub(crate) use motion_certificate::MotionCertificate;
 pub(crate) use near_rows::{MOST_ROWS, NearRow, NearRows};
 pub use obstacles::{Obstacle, Obstacles};

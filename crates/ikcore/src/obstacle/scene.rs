@@ -107,6 +107,18 @@ impl<'a> Scene<'a> {
         Ok(Self { robot, bodies, others, fixed: OnceLock::new(), clear_at_rest: OnceLock::new() })
     }
 
+    /// Scene of a robot around which nothing is, and whose links may cross each other: nothing can touch, so it needs no bodies.
+    ///
+    /// # Errors
+    /// None in practice: there are no obstacles.
+    pub(super) fn empty(robot: impl Into<SceneRobot<'a>>) -> Result<Self> {
+        let (robot, obstacles) = (robot.into(), Obstacles::default());
+        let bodies = Arc::clone(robot.body_model());
+        let allowed = AllowedContacts::new(&robot, &bodies.carried, &obstacles)?;
+        let others = OtherBodies { obstacles, allowed, itself: false };
+        Ok(Self { robot, bodies, others, fixed: OnceLock::new(), clear_at_rest: OnceLock::new() })
+    }
+
     /// The smallest distance (m) of an obstacle from a body that no joint moves, and the pair; the same at any configuration.
     pub(super) fn fixed(&self) -> Option<(f64, BodyPair)> {
         *self.fixed.get_or_init(|| self.nearest_fixed())

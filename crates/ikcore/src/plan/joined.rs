@@ -19,6 +19,10 @@ pub(crate) fn joined(
     if let Some(after) = after {
         plan.trajectory = plan.trajectory.then(after, 0.0)?;
     }
+    if before.is_some() || after.is_some() {
+        // Certified of the plan alone.
+        plan.keeps.clear();
+    }
     plan.cost = plan.objective.of(robot, &plan.trajectory);
     plan.history = vec![Improvement { evaluations: plan.evaluations, cost: plan.cost }];
     Ok(plan)

@@ -10,6 +10,7 @@
 //! | `plan` | [`Plan`]: the result |
 //! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `joined` | a plan, and motions before and after it |
+//! | `kept_along` | what holds along a finished motion |
 //! | `collision_checks` | margins, collision errors and certifiable motions |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
 //! | `search` | runs a solver on the cost of a plan and records its progress |
@@ -20,6 +21,7 @@ mod cost;
 mod deadline;
 mod endpoint;
 mod joined;
+mod kept_along;
 #[allow(clippy::module_inception)]
 mod plan;
 mod planar_arm;
@@ -38,6 +40,7 @@ pub(crate) use deadline::Deadline;
 pub use endpoint::Endpoint;
 pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
+pub(crate) use kept_along::broken_along;
 pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::collision_checks::least_clearance;
 use super::cost::Cost;
 use super::planar_arm::Orientations;
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::limits::JointOutside;
 use crate::message::{Message, Setting, message};
@@ -45,6 +46,8 @@ pub struct Plan {
     pub end_turned: Vec<JointTurned>,
     /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
+    /// What holds at every instant of the motion. [`kept`](Self::kept) finds the largest errors.
+    pub keeps: Vec<Keep>,
     /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
@@ -131,6 +134,7 @@ impl Plan {
             start_outside: vec![],
             end_turned: vec![],
             freed: None,
+            keeps: vec![],
             surroundings: None,
             accuracy: None,
             reference: None,

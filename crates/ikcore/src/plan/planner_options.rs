@@ -5,6 +5,7 @@ use std::str::FromStr;
 use super::cost::Cost;
 use super::straight_line::StraightLine;
 use super::tpbso_options::Tpbso;
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::limits::{AdmittedStart, Limits, StartSlack};
 use crate::message::Setting;
@@ -122,6 +123,8 @@ pub struct PointToPointOptions {
     pub free_start: bool,
     /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
+    /// What holds at every instant of the motion.
+    pub keeps: Vec<Keep>,
     /// The planner.
     pub method: PointToPointMethod,
     /// Quantity to minimise.
@@ -146,6 +149,8 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
+    /// What holds at every instant of the motion.
+    pub keeps: Vec<Keep>,
     /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// Start configuration (n,). `None` leaves it to the planner.

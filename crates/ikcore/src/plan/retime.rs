@@ -45,8 +45,20 @@ impl Plan {
         let freed = self.freed.map(|freed| Freed { until: freed.until * slower, ..freed });
         let mut retimed = Self { trajectory, cost, freed, elapsed: stopwatch.elapsed(), ..self.clone() };
         retimed.certify(robot, limits.limit_jerk())?;
+        retimed.certify_kept(robot)?;
         retimed.name_peak(&limits);
         Ok(retimed)
+    }
+
+    /// Checks that everything holds that the plan keeps on the way.
+    fn certify_kept(&mut self, robot: &Robot) -> Result<()> {
+        let keeps = std::mem::take(&mut self.keeps);
+        self.note_kept(robot, &keeps)?.map_or(Ok(()), |broken| {
+            let problem = format!(
+                "the motion would not hold what the plan keeps on the way: {broken}; plan with these limits instead"
+            );
+            Err(Error::Infeasible { problem: problem.into() })
+        })
     }
 
     /// Checks that the motion keeps the margin. `smoothed` for jerk limits, it leaves the path a little.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::along_path::timed::PathProblem;
+use crate::along_path::timed::{PathKeeps, PathProblem};
 use crate::along_path::{TipPath, clear_path, missed_points, timed};
 use crate::error::{Error, Result};
 use crate::limits::AdmittedStart;
@@ -31,13 +31,18 @@ pub fn plan_along_path(
     let tip_path = options
         .task
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
+    options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
+    let keeps = PathKeeps { robot, keeps: &options.keeps };
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), options.method.named())?;
     let mut plan = match options.admitted_start(robot, &limits)? {
-        None => plan_admitted(robot, &tip_path, options, monitor),
-        Some(start) => plan_from(robot, &tip_path, (start, &limits), options, monitor),
+        None => plan_admitted(robot, &tip_path, keeps, options, monitor),
+        Some(start) => plan_from(robot, &tip_path, keeps, (start, &limits), options, monitor),
     }?;
+    if plan.note_kept(keeps.robot, keeps.keeps)?.is_some() && plan.status == Status::Solved {
+        plan.status = Status::Stalled;
+    }
     plan.name_peak(&limits);
     Ok(plan)
 }
@@ -47,19 +52,21 @@ pub fn plan_along_path(
 fn plan_from(
     robot: &Robot,
     tip_path: &TipPath,
+    keeps: PathKeeps<'_>,
     (start, limits): (AdmittedStart, &ConstantLimits),
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let AdmittedStart { q, outside } = start;
     let options = AlongPathOptions { start: Some(q.clone()), ..options.clone() };
-    let mut planned = plan_admitted(robot, tip_path, &options, monitor);
+    let mut planned = plan_admitted(robot, tip_path, keeps, &options, monitor);
     let begins_there = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.trajectory.start() == q);
     let succeeded = |planned: &Result<Plan>| planned.as_ref().is_ok_and(|plan| plan.violations.is_empty());
     let is_led = begins_there(&planned) && succeeded(&planned);
     if !outside.is_empty() && !is_led {
         let widened = limits.widened_to(robot, options.limits.as_ref(), &q)?;
-        let again = plan_admitted(robot, tip_path, &AlongPathOptions { limits: Some(widened), ..options }, monitor);
+        let wider = AlongPathOptions { limits: Some(widened), ..options };
+        let again = plan_admitted(robot, tip_path, keeps, &wider, monitor);
         let ends_inside = again.as_ref().is_ok_and(|plan| limits.contain(&plan.trajectory.end()));
         if !begins_there(&planned) || (succeeded(&again) && ends_inside) {
             planned = again;
@@ -72,13 +79,14 @@ fn plan_from(
 fn plan_admitted(
     robot: &Robot,
     tip_path: &TipPath,
+    keeps: PathKeeps<'_>,
     options: &AlongPathOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     let space = options.surroundings.clear_space(robot)?;
     match (&options.method, &space) {
         (AlongPathMethod::Timed, space) => {
-            let problem = PathProblem::new(robot, tip_path, options)?;
+            let problem = PathProblem::new(robot, tip_path, keeps, options)?;
             match space {
                 None => free_motion(&problem, monitor),
                 Some(space) => clear_path::along_path(&problem, Some(space), monitor),
@@ -86,6 +94,9 @@ fn plan_admitted(
         }
         (AlongPathMethod::Tpbso(_), _) if options.task.is_some() || space.is_some() => Err(Error::Contradiction {
             problem: message!["along a path a task, obstacles and self-collision need ", Setting::Method("timed")],
+        }),
+        (AlongPathMethod::Tpbso(_), _) if !options.keeps.is_empty() => Err(Error::Contradiction {
+            problem: message!["what is to be kept along a path needs ", Setting::Method("timed")],
         }),
         (AlongPathMethod::Tpbso(_), _) if options.solver.is_some() => Err(Error::Contradiction {
             problem: message![
@@ -104,7 +115,10 @@ fn plan_admitted(
 /// violations, through layers of postures.
 fn free_motion(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Plan> {
     let PathProblem { robot, tip_path, options, .. } = problem;
-    let followed = timed::along_path(problem, monitor)?;
+    let mut followed = timed::along_path(problem, monitor)?;
+    if let Some(plan) = &mut followed {
+        plan.note_kept(problem.keeps.robot, problem.keeps.keeps)?;
+    }
     let missed = match followed {
         Some(plan) if plan.violations.is_empty() || plan.status == Status::Interrupted => return Ok(plan),
         Some(_) => None,

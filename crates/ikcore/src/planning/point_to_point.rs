@@ -8,7 +8,7 @@ use crate::message::{Message, Setting, message};
 use crate::obstacle::ClearSpace;
 use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions, motion_space};
 use crate::robot::Robot;
-use crate::solver::{Monitor, Stopwatch};
+use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Task;
 use crate::timing::ConstantLimits;
 use crate::{free_path, tpbso};
@@ -33,6 +33,9 @@ pub fn plan_point_to_point(
     let space = motion_space(&options.surroundings, robot)?;
     let admitted = AdmittedEnds::read(robot, start, ends, options)?;
     let mut plan = plan_admitted(robot, &admitted, space.as_ref(), options, monitor)?;
+    if plan.note_kept(robot, &options.keeps)?.is_some() && plan.status == Status::Solved {
+        plan.status = Status::Stalled;
+    }
     admitted.note(robot, ends, &mut plan);
     Ok(plan)
 }
@@ -129,6 +132,7 @@ pub(crate) fn check_point_to_point(
     for (i, end) in ends.iter().enumerate() {
         end.check(EndName::of(i, ends.len()), robot, task)?;
     }
+    options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     options.surroundings.kept_margin().map(|_| ())
 }
 
@@ -160,6 +164,7 @@ fn only_end<'a>(ends: &'a [Endpoint], options: &PointToPointOptions) -> Result<&
             refused(message![Setting::StartVelocity, " is kept"], "begins at rest")
         }
         _ if options.has_pieces() => refused("approach, retreat and free_start are kept".into(), "has no such pieces"),
+        _ if !options.keeps.is_empty() => refused("keep is held".into(), "checks nothing on the way"),
         _ if options.task.is_some() => refused("task is kept".into(), "reaches whole targets"),
         [end] => Ok(end),
         _ => refused("several ends are taken".into(), "plans to one"),

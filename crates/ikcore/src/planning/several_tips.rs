@@ -1,12 +1,13 @@
 //! Point to point for robots with several tips: targets of the tips become configurations, between which the planner joins.
 
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, Solution, SolveOptions, solve_all_tips, solve_tips};
 use crate::obstacle::ClearSpace;
 use crate::plan::{END_RESERVE, EndName, Endpoint, PointToPointOptions, no_usable_end};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{NamedTask, Target};
+use crate::task::{NamedTask, Subject, Target};
 use crate::timing::ConstantLimits;
 
 /// Configurations of an end that are tried, beside the one that a descent from the start leads to.
@@ -58,19 +59,21 @@ pub(super) fn tip_ends(
 struct EndSearch<'a> {
     robot: &'a Robot,
     options: SolveOptions,
+    keeps: &'a [Keep],
     evaluations: usize,
 }
 
 impl<'a> EndSearch<'a> {
-    fn new(robot: &'a Robot, space: Option<&ClearSpace<'_>>, options: &PointToPointOptions) -> Result<Self> {
+    fn new(robot: &'a Robot, space: Option<&ClearSpace<'_>>, options: &'a PointToPointOptions) -> Result<Self> {
         let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), "plan_point_to_point")?;
+        let keeps = &options.keeps;
         let options = SolveOptions {
             limits: Some(limits.position_limits(robot)?),
             surroundings: space.map(|space| space.narrowed(END_RESERVE).surroundings()).unwrap_or_default(),
             seed: options.seed,
             ..SolveOptions::default()
         };
-        Ok(Self { robot, options, evaluations: 0 })
+        Ok(Self { robot, options, keeps, evaluations: 0 })
     }
 
     /// The configuration of the start.
@@ -100,17 +103,32 @@ impl<'a> EndSearch<'a> {
             self.solve(SolveOptions { start: Some(start.to_vec()), ..self.options_of(tips) }, targets, monitor)?;
         reached(name, &first)?;
         let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
-        let others = solve_all_tips(self.robot, targets, &all, monitor)?;
+        let targets: Vec<Target> = targets.iter().chain(self.also_kept(tips).map(Keep::target)).copied().collect();
+        let others = solve_all_tips(self.robot, &targets, &all, monitor)?;
         self.evaluations += others.evaluations;
         Ok(std::iter::once(first.q.to_vec()).chain(others.solutions.iter().map(|other| other.q.to_vec())).collect())
     }
 
     fn options_of(&self, tips: &[NamedTask]) -> SolveOptions {
-        SolveOptions { tips: tips.to_vec(), ..self.options.clone() }
+        let also = self.also_kept(tips).map(|keep| *keep.task());
+        SolveOptions { tips: tips.iter().copied().chain(also).collect(), ..self.options.clone() }
+    }
+
+    /// What is to be kept of tips and pairs without a target among `tips`: it holds at the ends too.
+    fn also_kept(&self, tips: &[NamedTask]) -> impl Iterator<Item = &'a Keep> {
+        let named: Vec<Subject> = tips.iter().map(|task| task.subject).collect();
+        let is_named = move |subject: Subject| {
+            named.contains(&subject)
+                || matches!(subject, Subject::Pair { from, of } if named.contains(&Subject::Pair { from: of, of: from }))
+        };
+        self.keeps.iter().filter(move |keep| !is_named(keep.task().subject))
     }
 
     fn solve(&mut self, options: SolveOptions, targets: &[Target], monitor: &mut dyn Monitor) -> Result<Solution> {
-        let solution = solve_tips(self.robot, targets, &options, monitor)?;
+        let given = &options.tips[..targets.len()];
+        let targets: Vec<Target> =
+            targets.iter().copied().chain(self.also_kept(given).map(|keep| *keep.target())).collect();
+        let solution = solve_tips(self.robot, &targets, &options, monitor)?;
         self.evaluations += solution.evaluations;
         Ok(solution)
     }

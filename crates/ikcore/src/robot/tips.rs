@@ -5,6 +5,7 @@ use super::tip_chain::{TipChain, first_tip};
 use crate::error::{Error, Result, shortened, suggestion};
 use crate::kinematics::{Reach, Screws, TaskRank};
 use crate::math::Columns;
+use crate::math::arithmetic::NoFma;
 use crate::math::{Frame, MAX_DOF};
 use crate::message::{Message, Setting, message};
 use crate::wording::{joined, listed};
@@ -95,6 +96,14 @@ impl Robot {
         match self.tip_chain(tip) {
             None => self.tip(q),
             Some(TipChain { whole, .. }) => (whole.kernels.tip)(&whole.chain, q),
+        }
+    }
+
+    /// Frame of tip number `tip`, with the moving elements at `frames`.
+    pub(crate) fn tip_among(&self, tip: usize, frames: &[Frame]) -> Frame {
+        match self.tip_chain(tip) {
+            None => frames[self.chain().moving].then::<NoFma>(&self.chain().tip),
+            Some(TipChain { link, .. }) => self.tree().link_frame(*link, frames),
         }
     }
 

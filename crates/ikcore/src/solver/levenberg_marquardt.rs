@@ -142,7 +142,7 @@ impl<O: LeastSquares + ?Sized> Solver<O> for LevenbergMarquardt {
         let State { x, descent, linearizations, here } = state;
         let (bounds, lambda) = (evaluator.bounds(), descent.lambda()?);
         let mut trial = Point::from_slice(x);
-        linearizations[*here].write_step(lambda, x, [bounds.lower(), bounds.upper()], &mut trial);
+        linearizations[*here].write_step(lambda, x, bounds, &mut trial);
         if trial == *x {
             return Err(Status::Stalled);
         }

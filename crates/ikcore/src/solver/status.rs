@@ -67,6 +67,8 @@ statuses! {
         "The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.";
     PositionGivenUp = 17, "POSITION_GIVEN_UP":
         "The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.";
+    HeldByConstraint = 18, "HELD_BY_CONSTRAINT":
+        "A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.";
 }
 
 impl Status {
@@ -90,6 +92,9 @@ impl Status {
             Self::BelowThreshold => "lower error_threshold, or leave it out and let the tolerances decide",
             Self::InCollision => "move the target or what is in the way, or lower the margin",
             Self::HeldByObstacle => "move the target or what is in the way, lower the margin, or plan a way round",
+            Self::HeldByConstraint => {
+                "move the target to where everything can be kept, or widen a tolerance of what is kept"
+            }
             Self::RotationGivenUp => {
                 "turn the target, give the rotation a tolerance, or take a task that leaves it free, such as Position or Pointing"
             }

@@ -30,6 +30,7 @@ impl Criterion {
 
     /// Reduces a weighted residual, along the axes of the target if components count, and its derivatives to what lies beyond the
     /// tolerances; returns the sum of squares.
+    #[inline(never)]
     pub(super) fn reduce_to_excess(&self, target: &Target, dof: usize, out: &mut TaskBlock) -> f64 {
         let chord = |angle: f64| 2.0 * (0.5 * angle.min(std::f64::consts::PI)).sin();
         let is_pointing = matches!(target, Target::Pointing { .. });

@@ -104,8 +104,12 @@ impl CheckedTask {
     }
 
     /// Frame of the subject at `q`.
-    pub(super) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
-        let tip = |tip: usize| robot.tip_of(tip, q);
+    pub(crate) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
+        self.frame_of(|tip| robot.tip_of(tip, q))
+    }
+
+    /// Frame of the subject, with each tip at the frame that `tip` returns.
+    pub(crate) fn frame_of(&self, tip: impl Fn(usize) -> Frame) -> Frame {
         let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
         match self.subject {
             Subject::Tip(of) => at_tool(tip(of)),
@@ -114,7 +118,7 @@ impl CheckedTask {
     }
 
     /// Frame of the subject at `q`, and its geometric Jacobian.
-    pub(super) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
+    pub(crate) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
         let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
         let mut frame = robot.tip_and_jacobian_of(of, q, columns);
         if let Some(tool) = &self.tool {

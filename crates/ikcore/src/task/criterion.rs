@@ -43,6 +43,13 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
+    /// Multiplies all tolerances by `fraction`.
+    pub(crate) fn narrow(&mut self, fraction: f64) {
+        let Tolerance { position, rotation } = &mut self.tolerance;
+        let of_components = self.components.iter_mut().filter_map(|components| components.tolerance.as_mut());
+        of_components.flatten().chain([position, rotation]).for_each(|tolerance| *tolerance *= fraction);
+    }
+
     /// Whether `target` fixes a whole pose under this criterion.
     pub(crate) fn fixes_pose(&self, target: &Target) -> bool {
         matches!(target, Target::Pose(_)) && self.components.is_none() && self.region.is_none()

@@ -1,5 +1,7 @@
 //! Task of a tip or of a pair of tips, as given by the caller.
 
+use serde::{Deserialize, Serialize};
+
 use super::checked_task::CheckedTask;
 use super::subject::Subject;
 use super::tip_error::Tolerance;
@@ -8,7 +10,7 @@ use crate::error::Result;
 use crate::math::Frame;
 
 /// Task of a tip, or of a pair of tips.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NamedTask {
     /// Frame that the target refers to.
     pub subject: Subject,

@@ -23,17 +23,15 @@ impl First {
                 model.first_row = 0;
                 model.residual = position::residual(&target.origin, &tip.origin);
                 write_angle(target, tip, columns, model);
-                for (i, j) in pairs(n) {
-                    let bend = cross(&axis(&columns[i]), &linear(&columns[j]));
-                    (0..3).for_each(|k| RankedModel::set(&mut model.bends[k], n, i, j, bend[k]));
+                for (j, column) in columns.iter().enumerate() {
+                    (model.axes[j], model.arms[j]) = (axis(column), linear(column));
                 }
             }
             Self::Orientation => {
                 model.first_row = 3;
                 write_distance(target, tip, columns, model);
-                for (i, j) in pairs(n).filter(|(i, j)| i != j) {
-                    let bend = cross(&axis(&columns[i]), &axis(&columns[j]));
-                    (0..3).for_each(|k| RankedModel::set(&mut model.bends[k], n, i, j, 0.5 * bend[k]));
+                for (j, column) in columns.iter().enumerate() {
+                    (model.axes[j], model.arms[j]) = (axis(column), axis(column).map(|entry| 0.5 * entry));
                 }
                 let (phi, inverse) = rotation_and_jacobian(&axes_of(target), &axes_of(tip));
                 model.residual = phi.stored();
@@ -72,12 +70,15 @@ fn write_angle(target: &Frame, tip: &Frame, columns: &[[f64; 6]], model: &mut Ra
     }
     model.value = 0.5 * (3.0 - trace);
     for (i, column) in columns.iter().enumerate() {
-        model.gradient[i] = dot(&axis(column), &sine);
-    }
-    for (i, j) in pairs(n) {
-        let (a, b) = (axis(&columns[i]), axis(&columns[j]));
-        let through: f64 = axes().map(|(d, r)| dot(&a, r) * dot(d, &b)).sum();
-        RankedModel::set(&mut model.hessian, n, i, j, 0.5 * (dot(&a, &b) * trace - through));
+        let a = axis(column);
+        model.gradient[i] = dot(&a, &sine);
+        let of_tip = tip.axes.map(|r| dot(&a, &r));
+        // M a_i, so that a_i'M a_j is its product with a_j.
+        let turned: [f64; 3] = std::array::from_fn(|k| (0..3).map(|c| target.axes[c][k] * of_tip[c]).sum());
+        for (j, other) in columns.iter().enumerate().skip(i) {
+            let b = axis(other);
+            RankedModel::set(&mut model.hessian, n, i, j, 0.5 * (dot(&a, &b) * trace - dot(&turned, &b)));
+        }
     }
 }
 
@@ -130,10 +131,11 @@ mod tests {
                 for i in 0..n {
                     let bend = (ahead.gradient[i] - behind.gradient[i]) / (2.0 * h);
                     assert!((bend - here.hessian[i * n + j]).abs() < 1e-7, "{first}, hessian {i} {j}");
+                    let known = cross(&here.axes[i.min(j)], &here.arms[i.max(j)]);
                     for k in 0..3 {
                         let row = here.first_row + k;
                         let bend = (columns_ahead[i][row] - columns_behind[i][row]) / (2.0 * h);
-                        assert!((bend - here.bends[k][i * n + j]).abs() < 1e-7, "{first}, bend {k} {i} {j}");
+                        assert!((bend - known[k]).abs() < 1e-7, "{first}, bend {k} {i} {j}");
                     }
                 }
             }

@@ -1,7 +1,9 @@
 //! Subject of a target: a tip, or a pair of tips.
 
+use serde::{Deserialize, Serialize};
+
 /// Frame that a target refers to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Subject {
     /// Tip of this number.
     Tip(usize),

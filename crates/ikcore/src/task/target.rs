@@ -1,15 +1,17 @@
 //! Targets of the tip.
 
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use crate::error::{Result, require_finite};
+use crate::math::vector::distance;
 use crate::math::{Frame, Pose};
 
 /// Targets of one solve: one for each task.
 pub type TargetRow = SmallVec<[Target; 1]>;
 
 /// Target of the tip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Target {
     /// Position (m); the orientation is free.
     Position([f64; 3]),
@@ -61,6 +63,19 @@ impl Target {
             Self::Position(_) => None,
             Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => Some(frame),
         }
+    }
+
+    /// Distance to another target, in position and in the axes of its frame (m, rad); infinite to one of another kind.
+    pub(crate) fn distance_to(&self, other: &Self) -> f64 {
+        let apart = |one: Option<&[f64]>, other: Option<&[f64]>| match (one, other) {
+            (Some(one), Some(other)) => distance(one, other),
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        };
+        let positions = [self.position(), other.position()];
+        let [one, two] = [0, 1].map(|k: usize| positions[k].as_ref().map(<[f64; 3]>::as_slice));
+        let axes = [self, other].map(|target| target.frame().map(|frame| frame.axes.as_flattened()));
+        apart(one, two) + apart(axes[0], axes[1])
     }
 
     /// Replaces the position of the target, if it has one.

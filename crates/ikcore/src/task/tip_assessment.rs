@@ -21,13 +21,19 @@ impl Target {
             Some(components) => criterion.assess_components(components, self, &self.residual(tip), error),
         };
         if criterion.beyond {
-            let mut block = TaskBlock { residual: self.residual(tip), ..TaskBlock::default() };
-            if let Some(components) = &criterion.components {
-                components.apply(self, 0, &mut block);
-            }
-            assessment.score.value = criterion.reduce_to_excess(self, 0, &mut block);
+            assessment.score.value = self.excess(tip, criterion);
         }
         assessment
+    }
+
+    /// Value of what lies beyond the tolerances. Apart, because its block would burden the assessment of every other target.
+    #[inline(never)]
+    fn excess(&self, tip: &Frame, criterion: &Criterion) -> f64 {
+        let mut block = TaskBlock { residual: self.residual(tip), ..TaskBlock::default() };
+        if let Some(components) = &criterion.components {
+            components.apply(self, 0, &mut block);
+        }
+        criterion.reduce_to_excess(self, 0, &mut block)
     }
 
     /// Writes weighted residual and Jacobian from the geometric Jacobian in the first `dof` columns of `out`, and returns the

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::components::{Components, check_tolerances, check_weights};
 use super::criterion::Criterion;
 use super::first::First;
@@ -15,7 +17,7 @@ use crate::math::so3::norm;
 use crate::robot::Robot;
 
 /// Part of a pose to reach.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TaskKind {
     /// Whole pose.
     Pose,
@@ -31,7 +33,7 @@ pub enum TaskKind {
 }
 
 /// Task of the tip, or of a tool at the tip.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Task {
     /// Part of a pose to reach.
     pub kind: TaskKind,

@@ -41,7 +41,7 @@ const MOVING: f64 = 1e-7;
 const WISHED: f64 = 1e-5;
 
 /// Time constant with which a desired distance is restored (s).
-const PACE: f64 = 0.1;
+pub(super) const PACE: f64 = 0.1;
 
 /// Velocities of the obstacles between two updates of their poses.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -95,13 +95,8 @@ impl Around {
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
     /// obstacle.
     pub fn new(space: ClearSpace<'static>, obstacles: ObstacleVelocities, limits: &Limits) -> Result<Self> {
-        for field in [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk] {
-            let remedy =
-                "limits that vary can carry the arm into an obstacle; give numbers, or leave the obstacles out";
-            if limits.field(field).is_some() {
-                limits.constants(field, "tracking among obstacles", remedy)?;
-            }
-        }
+        let remedy = "limits that vary can carry the arm into an obstacle; give numbers, or leave the obstacles out";
+        require_constant(limits, "tracking among obstacles", remedy)?;
         Ok(Self {
             near: NearRows::new(space.scene()),
             after: NearRows::new(space.scene()),
@@ -273,6 +268,16 @@ impl Around {
     }
 }
 
+/// Checks that the limits that decide where an arm can stop are constant.
+///
+/// # Errors
+/// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) with the `method` that needs this, and the remedy.
+pub(super) fn require_constant(limits: &Limits, method: &'static str, remedy: &'static str) -> Result<()> {
+    let fields = [Field::Lower, Field::Upper, Field::Acceleration, Field::Jerk].into_iter();
+    let mut given = fields.filter(|field| limits.field(*field).is_some());
+    given.try_for_each(|field| limits.constants(field, method, remedy).map(|_| ()))
+}
+
 /// Secant model of the rest configuration over the box of commands x: r_j(x) = rest_j + slope_j x_j + offset_j.
 pub(super) struct Response {
     pub slope: Point,
@@ -299,7 +304,7 @@ impl Response {
     }
 
     /// Row of the command for gradient'(r(x) - rest) >= `least`.
-    fn row(&self, gradient: &[f64; MAX_DOF], least: f64) -> Row {
+    pub fn row(&self, gradient: &[f64; MAX_DOF], least: f64) -> Row {
         let mut row = Row { gradient: [0.0; MAX_DOF], least, softness: SOFTNESS };
         for (j, (slope, offset)) in self.slope.iter().zip(&self.offset).enumerate() {
             row.gradient[j] = gradient[j] * slope;

@@ -18,8 +18,8 @@ pub(super) struct CommandAndStop<'a> {
     command: &'a [f64],
     /// Stop of each joint and its largest acceleration (rad, m per tick^2); empty if the arm may stop at once.
     stops: SmallVec<[(StopCurve, f64); MAX_DOF]>,
-    /// Displacements in the previous tick.
-    before: &'a [f64],
+    /// State of an arm with limited acceleration at tick 0.
+    state: Option<&'a JointState>,
     ticks: f64,
 }
 
@@ -35,8 +35,7 @@ impl<'a> CommandAndStop<'a> {
             }
         }
         let ticks = stops.iter().map(|(stop, _)| stop.ticks()).fold(0.0, f64::max);
-        let before = limited.map_or(&[][..], |(_, state)| &state.step);
-        Self { from, command, stops, before, ticks }
+        Self { from, command, stops, state: limited.map(|(_, state)| state), ticks }
     }
 
     /// Ticks from the end of the command until the arm is at rest.
@@ -62,11 +61,8 @@ impl<'a> CommandAndStop<'a> {
 
 impl JointMotion for CommandAndStop<'_> {
     fn write(&self, tick: f64, q: &mut [f64]) {
-        if tick < 0.0 && self.is_spline() {
-            for (q, (from, step)) in q.iter_mut().zip(self.from.iter().zip(self.before)) {
-                *q = from - step;
-            }
-            return;
+        if let Some(state) = self.state.filter(|_| tick < 0.0) {
+            return write_before(self.from, state, tick, q);
         }
         if tick <= 1.0 {
             write_between(self.from, self.command, tick, q);
@@ -97,6 +93,13 @@ impl JointMotion for CommandAndStop<'_> {
 
     fn is_spline(&self) -> bool {
         !self.stops.is_empty()
+    }
+}
+
+/// Writes the configuration one or two ticks before `from`, at a tick of -1 or -2.
+pub(super) fn write_before(from: &[f64], state: &JointState, tick: f64, q: &mut [f64]) {
+    for (q, (from, (step, change))) in q.iter_mut().zip(from.iter().zip(state.step.iter().zip(&state.change))) {
+        *q = from - step - if tick < -1.0 { step - change } else { 0.0 };
     }
 }
 

@@ -1,6 +1,7 @@
 //! Coupled stops, which hold pairs of tips: all joints brake in proportion and are projected onto the relative poses of the
 //! pairs.
 
+use super::command_and_stop::write_before;
 use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
 use super::step_context::StepContext;
 use crate::math::vector::{dot, write_between};
@@ -20,8 +21,8 @@ const REST: f64 = 1e-8;
 pub(super) struct CoupledStop {
     /// Configurations before and after the command, and at the ends of the ticks of the stop.
     configurations: Vec<Point>,
-    /// Displacements in the previous tick.
-    before: Point,
+    /// State at the command's beginning.
+    state: JointState,
     /// Largest accelerations (rad, m per tick^2).
     acceleration: Point,
     /// Number of configurations of the stop passed so far.
@@ -63,7 +64,7 @@ impl CoupledStop {
         self.configurations.extend([Point::from_slice(context.q), Point::from_slice(command)]);
         self.limited = context.limited.is_some();
         let Some(limited) = context.limited else { return true };
-        self.before.clone_from(&limited.state().step);
+        self.state.clone_from(limited.state());
         self.acceleration = limited.braking().iter().map(|braking| braking.acceleration).collect();
         let mut state = limited.state().clone();
         state.advance(command.iter().zip(context.q).map(|(to, from)| to - from));
@@ -121,8 +122,7 @@ impl JointMotion for CoupledStop {
     fn write(&self, tick: f64, q: &mut [f64]) {
         let Some(first) = self.configurations.first() else { return };
         if tick < 0.0 && self.limited {
-            q.iter_mut().zip(first.iter().zip(&self.before)).for_each(|(q, (first, step))| *q = first - step);
-            return;
+            return write_before(first, &self.state, tick, q);
         }
         let last = self.configurations.len() - 1;
         let before = (tick.max(0.0).floor() as usize).min(last);

@@ -21,6 +21,7 @@
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `progress` | progress towards its target of an arm held by obstacles |
+//! | `settling` | rest of an arm that comes no nearer to targets that stand still |
 //! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and what a step says of it |
 //! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
 //! | `tip_paths`, `current_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
@@ -39,6 +40,7 @@ mod constrained_step;
 mod controller;
 mod coupled_stop;
 mod current_tasks;
+mod kept;
 mod late_sensor;
 mod limited_state;
 mod model_free;
@@ -51,6 +53,7 @@ mod repeated_targets;
 mod rule;
 mod safety_filter;
 mod session;
+mod settling;
 mod step;
 mod step_context;
 mod target_filter;

@@ -355,6 +355,7 @@ impl Record {
                 "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
             }
             None if self.was_held_back() => self.held_back(),
+            None if self.count_of(Status::HeldByConstraint) > 0 => self.held_by_constraint(),
             None if let Some(lock) = self.limits.lock() => message![lock, "; or ", Status::Lost.advice()],
             None if self.starts_too_fast() => message![
                 "the path moves at its start, where the arm is at rest: ",
@@ -376,13 +377,24 @@ impl Record {
 
     /// Describes how obstacles held the arm back, with advice.
     fn held_back(&self) -> Message {
-        let count = |wanted: Status| self.step_status.iter().filter(|status| **status == wanted).count();
-        let (status, phrase) = match count(Status::InCollision) {
+        let (status, phrase) = match self.count_of(Status::InCollision) {
             0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
             _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
         };
         let advice = self.own_points.map_or_else(|| status.advice(), Sensed::advice);
-        message![format!("in {} steps {phrase}: ", count(status)), advice]
+        message![format!("in {} steps {phrase}: ", self.count_of(status)), advice]
+    }
+
+    /// Says in how many steps constraints held the arm back, with advice.
+    fn held_by_constraint(&self) -> Message {
+        let status = Status::HeldByConstraint;
+        let steps = self.count_of(status);
+        message![format!("in {steps} steps what is to be kept held the arm back: "), status.advice()]
+    }
+
+    /// Number of steps with a status.
+    fn count_of(&self, wanted: Status) -> usize {
+        self.step_status.iter().filter(|status| **status == wanted).count()
     }
 
     /// Returns [`message`](Self::message) with this `advice` if the track failed.

@@ -1,25 +1,28 @@
-//! Safety filter of commands: keeps the arm clear of everything around it, and pairs of tips at their relative poses.
+//! Safety filter of commands: keeps the arm clear of everything around it, constraints within their tolerances, and pairs of tips at
+//! their relative poses.
 //!
-//! Invariant: braking now ends in a configuration known to be clear. Each near pair of bodies gives a constraint row on the
-//! motion of the rest configuration towards the other body. The filter takes the command nearest to the proposed one, measured
+//! Invariant: braking now ends in a configuration known to be clear, at which all constraints hold. Each near pair of bodies gives a
+//! constraint row on the motion of the rest configuration towards the other body, and each error of a constraint one on that towards
+//! its tolerance. The filter takes the command nearest to the proposed one, measured
 //! by its effect on the task, that satisfies these rows and the box of the tick. The command is sent if it and the stop after
-//! it are certified clear, between ticks too; otherwise a fraction of it is; failing that, the previously certified stop
+//! it are certified, between ticks too; otherwise a fraction of it is; failing that, the previously certified stop
 //! continues.
 //!
 //! Pairs of tips at their relative poses stay there: they add equations to the rows, and the stop keeps them as well.
 
 use std::sync::Arc;
 
-use super::around_arm::{Around, ObstacleVelocities, Response};
+use super::around_arm::{Around, ObstacleVelocities, Response, require_constant};
 use super::constrained_step::{ConstrainedStep, Resting, StepRequest, Towards};
 use super::coupled_stop::CoupledStop;
+use super::kept::Kept;
 use super::progress::{Admitted, ArmProgress, is_nearer};
 use super::step_context::StepContext;
 use crate::error::Result;
 use crate::limits::Limits;
 use crate::math::vector::write_within;
 use crate::objective::{Bounds, Point};
-use crate::obstacle::{ClearSpace, MOST_COMING, MOST_ROWS};
+use crate::obstacle::{ClearSpace, JointMotion, MOST_COMING, MOST_ROWS};
 use crate::task::Aims;
 
 /// Fractions of a command, tried in turn if the whole is not certified.
@@ -35,13 +38,16 @@ const TRUSTED: f64 = 0.05;
 #[derive(Debug)]
 pub(super) struct SafetyFilter {
     around: Option<Around>,
+    kept: Option<Box<Kept>>,
     rows: ConstrainedStep,
     /// Stop after the last command of an arm that holds pairs; empty without pairs.
     stop: CoupledStop,
     /// Stop after the command under consideration.
     next_stop: CoupledStop,
-    /// Whether obstacles keep the last goal from its target.
-    goal_is_held: bool,
+    /// What keeps the last goal from its target.
+    holds_goal: Option<Holder>,
+    /// What is in the way of the command under consideration.
+    in_the_way: InTheWay,
     progress: ArmProgress,
 }
 
@@ -59,23 +65,56 @@ pub struct FilterWork {
 pub(super) struct FilterOutcome {
     /// Whether the command was changed.
     pub changed: bool,
-    /// Whether obstacles or links caused the change.
-    pub by_obstacles: bool,
+    /// What caused the change, if it was not the pairs of tips.
+    pub held_by: Option<Holder>,
+}
+
+/// What holds an arm back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Holder {
+    /// An obstacle or another link.
+    Body,
+    /// A constraint.
+    Constraint,
+}
+
+/// What was found to be in the way of commands.
+#[derive(Debug, Clone, Copy, Default)]
+struct InTheWay {
+    bodies: bool,
+    constraints: bool,
+}
+
+impl InTheWay {
+    fn any(self) -> bool {
+        self.bodies || self.constraints
+    }
+
+    /// What holds the arm: a body, unless only constraints are in the way.
+    fn holder(self) -> Holder {
+        if self.constraints && !self.bodies { Holder::Constraint } else { Holder::Body }
+    }
 }
 
 impl SafetyFilter {
-    /// Filter of an arm with these limits, in `space` if collisions are to be avoided.
+    /// Filter of an arm with these limits, in `space` if collisions are to be avoided, that keeps what is `kept`.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
-    /// obstacle.
-    pub fn new(space: Option<ClearSpace<'static>>, limits: &Limits) -> Result<Self> {
+    /// obstacle, or out of a tolerance.
+    pub fn new(space: Option<ClearSpace<'static>>, kept: Option<Kept>, limits: &Limits) -> Result<Self> {
+        if kept.is_some() {
+            let remedy = "limits that vary can carry the arm out of its tolerances; give numbers";
+            require_constant(limits, "tracking with constraints", remedy)?;
+        }
         Ok(Self {
+            kept: kept.map(Box::new),
             around: space.map(|space| Around::new(space, ObstacleVelocities::default(), limits)).transpose()?,
             rows: ConstrainedStep::with_room(limits.dof(), 2 * MOST_ROWS + MOST_COMING),
             stop: CoupledStop::default(),
             next_stop: CoupledStop::default(),
-            goal_is_held: false,
+            holds_goal: None,
+            in_the_way: InTheWay::default(),
             progress: ArmProgress::new(limits),
         })
     }
@@ -83,6 +122,11 @@ impl SafetyFilter {
     /// Clear space of the arm.
     pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
         self.around.as_ref().map(|around| &around.space)
+    }
+
+    /// Whether an obstacle moves.
+    pub fn sees_motion(&self) -> bool {
+        self.around.as_ref().is_some_and(|around| around.obstacles.fastest() > 0.0)
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
@@ -106,14 +150,16 @@ impl SafetyFilter {
                 (around.space, around.obstacles, around.since) = (Arc::new(space), obstacles, 0.0);
             }
             (Some(space), none) => *none = Some(Around::new(space, obstacles, limits)?),
-            (None, around) => (*around, self.goal_is_held) = (None, false),
+            (None, around) => (*around, self.holds_goal) = (None, None),
         }
         Ok(())
     }
 
     /// Work so far.
     pub fn work(&self) -> FilterWork {
-        let intervals = self.around.as_ref().map_or(0, Around::intervals);
+        let [around, kept] =
+            [self.around.as_ref().map(Around::intervals), self.kept.as_ref().map(|kept| kept.intervals())];
+        let intervals = around.unwrap_or(0) + kept.unwrap_or(0);
         FilterWork { intervals, exchanges: self.rows.exchanges() }
     }
 
@@ -141,31 +187,32 @@ impl SafetyFilter {
     }
 
     /// Changes the command `q` of the rule to one that keeps the arm clear and holds pairs of tips. Pairs that cannot be held
-    /// yet are ordinary tasks until they reach their relative pose.
-    pub fn filter(&mut self, context: &StepContext<'_>, q: &mut Point) -> FilterOutcome {
+    /// yet are ordinary tasks until they reach their relative pose. A `settled` arm stops, unless it has to move.
+    pub fn filter(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> FilterOutcome {
         let wanted = q.clone();
         match context.errors() {
             Some(errors) => self.progress.begin_tick(errors, context.dt),
             None => self.progress.restart(),
         }
-        let held = if context.aims.has_pairs() { self.filter_with_pairs(context, q) } else { None };
-        let by_obstacles = held.unwrap_or_else(|| {
+        let held = if context.aims.has_pairs() { self.filter_with_pairs(context, settled, q) } else { None };
+        let is_held = held.unwrap_or_else(|| {
             self.stop.clear();
             q.copy_from_slice(&wanted);
-            self.filter_for_clearance(context, q)
+            self.filter_one_by_one(context, settled, q)
         });
         if let Some(around) = &mut self.around {
             around.since += context.dt;
         }
-        if by_obstacles || self.goal_is_held {
+        if is_held || self.holds_goal.is_some() {
             self.progress.note_held();
         }
-        FilterOutcome { changed: *q != wanted, by_obstacles }
+        FilterOutcome { changed: *q != wanted, held_by: is_held.then(|| self.in_the_way.holder()) }
     }
 
-    /// Changes the command `q` to one that keeps the arm clear. Returns whether obstacles held it back.
-    fn filter_for_clearance(&mut self, context: &StepContext<'_>, q: &mut Point) -> bool {
-        if self.around.is_none() {
+    /// Changes the command `q` to one that keeps the arm clear and all constraints, for joints that stop one by one. Returns whether
+    /// something held it back.
+    fn filter_one_by_one(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> bool {
+        if self.around.is_none() && self.kept.is_none() {
             return false;
         }
         let brake = context.braking();
@@ -173,7 +220,7 @@ impl SafetyFilter {
         let rest = stop.rest();
         let wanted = q.clone();
         let blocked = self.set_rows(context, (&rest, stop.ticks_to_stop()), &wanted);
-        let admitted = self.admitted(&brake);
+        let admitted = self.admitted(settled, &brake);
         self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
         let nearer_than = (admitted != Admitted::All).then_some(&rest);
         let allowed = admitted != Admitted::Stopping
@@ -194,19 +241,21 @@ impl SafetyFilter {
         if admitted == Admitted::All {
             return *q != wanted;
         }
-        let nearer_than = self.progress.is_freed_nearer().then_some(&rest);
+        // An arm that is only settled is held by obstacles if these forbid what the rule proposes, nearer or not.
+        let is_held = self.progress.admitted() != Admitted::All;
+        let nearer_than = (is_held && self.progress.is_freed_nearer()).then_some(&rest);
         blocked || !self.allows(context, nearer_than, &wanted)
     }
 
-    /// Changes the command `q` to one that holds the pairs and keeps the arm clear. Returns whether obstacles changed it;
-    /// `None` if the pairs cannot be held.
-    fn filter_with_pairs(&mut self, context: &StepContext<'_>, q: &mut Point) -> Option<bool> {
+    /// Changes the command `q` to one that holds the pairs and keeps the arm clear and all constraints. Returns whether more than the
+    /// pairs changed it; `None` if they cannot be held.
+    fn filter_with_pairs(&mut self, context: &StepContext<'_>, settled: bool, q: &mut Point) -> Option<bool> {
         let mut brake = self.stop.next().cloned().unwrap_or_else(|| context.braking());
         context.tick_box.bounds.clip(&mut brake);
         let rest = self.stop.rest().cloned().unwrap_or_else(|| brake.clone());
         let wanted = q.clone();
         let mut blocked = self.set_rows(context, (&rest, self.stop.ticks_to_stop()), &wanted);
-        let admitted = self.admitted(&brake);
+        let admitted = self.admitted(settled, &brake);
         self.move_into_rows(context, (admitted, blocked), [&rest, &brake], q);
         let best = q.clone();
         for part in [1.0].into_iter().chain(PARTS).filter(|_| admitted != Admitted::Stopping) {
@@ -219,7 +268,7 @@ impl SafetyFilter {
                 continue;
             }
             let end = 1.0 + stop.ticks_to_stop();
-            if self.around.as_mut().is_none_or(|around| around.certifies(stop, end, dt)) {
+            if certifies((&mut self.around, &mut self.kept), (stop, end), dt, &mut self.in_the_way) {
                 std::mem::swap(&mut self.stop, &mut self.next_stop);
                 return Some(blocked);
             }
@@ -235,9 +284,11 @@ impl SafetyFilter {
 
     /// Decides which commands are admitted; `brake` is the braking command. An arm that is too near to a body or has to evade
     /// moves in any case.
-    fn admitted(&mut self, brake: &[f64]) -> Admitted {
+    fn admitted(&mut self, settled: bool, brake: &[f64]) -> Admitted {
         if self.rows.ask_to_move(brake) || self.around.as_ref().is_some_and(Around::is_too_near) {
             self.progress.restart();
+        } else if settled {
+            return Admitted::Stopping;
         }
         self.progress.admitted()
     }
@@ -276,8 +327,8 @@ impl SafetyFilter {
     fn allows(&mut self, context: &StepContext<'_>, rest: Option<&Point>, q: &[f64]) -> bool {
         let motion = context.stop_after(q);
         let comes_nearer = |rest: &Point| is_nearer(context, rest, &motion.rest());
-        rest.is_none_or(comes_nearer)
-            && self.around.as_mut().is_none_or(|around| around.certifies(&motion, motion.end_tick(), context.dt))
+        let all = (&mut self.around, &mut self.kept);
+        rest.is_none_or(comes_nearer) && certifies(all, (&motion, motion.end_tick()), context.dt, &mut self.in_the_way)
     }
 
     /// Corrects the command `q` by the rows at the rest configuration after it.
@@ -288,6 +339,9 @@ impl SafetyFilter {
         if let Some(around) = &mut self.around {
             around.set_rows_after(context, (&rest, stop.ticks_to_stop()), q, &mut self.rows.rows);
         }
+        if let Some(kept) = &mut self.kept {
+            kept.add_rows_after(context, &rest, q, &mut self.rows.rows);
+        }
         let start = q.clone();
         // Distances are measured by the effect on the tip itself, whatever the task.
         let aims = if context.robot.tip_count() > 1 { context.aims } else { Aims::default() };
@@ -297,48 +351,66 @@ impl SafetyFilter {
         self.rows.write(&StepRequest { aims, ..context.request(towards) }, &start, q);
     }
 
-    /// Moves `sample`, a configuration that meets a target, to one that also keeps the margin, by Gauss-Newton steps within the
-    /// rows from `from`. Returns whether it had to.
+    /// Moves `sample`, a configuration that meets a target, to one that also keeps the margin and all constraints, by Gauss-Newton
+    /// steps within the rows from `from`. Returns whether it had to.
     pub fn clear_goal(&mut self, context: &StepContext<'_>, from: &[f64], sample: &mut Point) -> bool {
-        let Self { around: Some(around), rows, goal_is_held, .. } = self else { return self.goal_is_held };
-        rows.wanted.clear();
-        *goal_is_held = !around.set_goal_rows(sample, &mut rows.rows);
-        if !*goal_is_held {
+        self.rows.wanted.clear();
+        let in_the_way = self.set_goal_rows(sample);
+        self.holds_goal = in_the_way.any().then(|| in_the_way.holder());
+        if self.holds_goal.is_none() {
             return false;
         }
         let positions = context.positions();
         sample.copy_from_slice(from);
         positions.clip(sample);
         for _ in 0..STEPS {
-            around.set_goal_rows(sample, &mut rows.rows);
+            self.set_goal_rows(sample);
             let start = sample.clone();
             let ends = start.iter().zip(positions.lower().iter().zip(positions.upper()));
             let near = ends.map(|(q, (lower, upper))| ((q - TRUSTED).max(*lower), (q + TRUSTED).min(*upper)));
             let near = Bounds::from_ranges(near);
-            rows.write(&StepRequest { ends: near.ends(), ..context.request(Towards::Target) }, &start, sample);
+            self.rows.write(&StepRequest { ends: near.ends(), ..context.request(Towards::Target) }, &start, sample);
         }
         true
     }
 
-    /// Whether the straight line of the joints between two configurations is certified clear.
-    pub fn certifies_line(&mut self, from: &[f64], to: &[f64]) -> bool {
-        self.around.as_mut().is_none_or(|around| around.certifies_line(from, to))
+    /// Sets the rows of a goal at `q`. Returns what is in its way.
+    fn set_goal_rows(&mut self, q: &[f64]) -> InTheWay {
+        let Self { around, kept, rows, .. } = self;
+        rows.rows.clear();
+        let bodies = around.as_mut().is_some_and(|around| !around.set_goal_rows(q, &mut rows.rows));
+        let constraints = kept.as_mut().is_some_and(|kept| !kept.add_goal_rows(q, &mut rows.rows));
+        InTheWay { bodies, constraints }
     }
 
-    /// Whether obstacles changed the last goal.
-    pub fn goal_is_held(&self) -> bool {
-        self.goal_is_held
+    /// Whether the straight line of the joints between two configurations is certified.
+    pub fn certifies_line(&mut self, from: &[f64], to: &[f64]) -> bool {
+        self.around.as_mut().is_none_or(|around| around.certifies_line(from, to))
+            && self.kept.as_mut().is_none_or(|kept| kept.certifies_line(from, to))
+    }
+
+    /// What keeps the last goal from its target.
+    pub fn holds_goal(&self) -> Option<Holder> {
+        self.holds_goal
+    }
+
+    /// The constraints.
+    pub fn kept(&self) -> Option<&Kept> {
+        self.kept.as_deref()
     }
 
     /// Sets the rows of the command. Returns whether `command` violates a row.
     fn set_rows(&mut self, context: &StepContext<'_>, (rest, stop_ticks): (&[f64], f64), command: &[f64]) -> bool {
-        let Self { around, rows, .. } = self;
+        let Self { around, kept, rows, in_the_way, .. } = self;
         rows.rows.clear();
         rows.wanted.clear();
-        around.as_mut().is_some_and(|around| {
+        let bodies = around.as_mut().is_some_and(|around| {
             around.find_near(context, rest);
             around.set_rows(context, (rest, stop_ticks), command, rows)
-        })
+        });
+        let constraints = kept.as_mut().is_some_and(|kept| kept.add_rows(context, rest, command, &mut rows.rows));
+        *in_the_way = InTheWay { bodies, constraints };
+        in_the_way.any()
     }
 
     /// Moves `q` to the command that satisfies the rows and disturbs the task least.
@@ -352,4 +424,21 @@ impl SafetyFilter {
             self.rows.write(&context.request(towards), &start, q);
         }
     }
+}
+
+/// Whether bodies and constraints certify a motion until its end (ticks of `dt`); notes which does not.
+fn certifies(
+    (around, kept): (&mut Option<Around>, &mut Option<Box<Kept>>),
+    (motion, end): (&impl JointMotion, f64),
+    dt: f64,
+    in_the_way: &mut InTheWay,
+) -> bool {
+    // Constraints first: they cost less.
+    if kept.as_mut().is_some_and(|kept| !kept.certifies(motion, end)) {
+        in_the_way.constraints = true;
+        return false;
+    }
+    let is_clear = around.as_mut().is_none_or(|around| around.certifies(motion, end, dt));
+    in_the_way.bodies |= !is_clear;
+    is_clear
 }

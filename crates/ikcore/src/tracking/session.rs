@@ -4,16 +4,19 @@ use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
 use super::away::Way;
+use super::kept::Kept;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
 use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::safety_filter::{FilterOutcome, FilterWork, SafetyFilter};
+use super::safety_filter::{FilterOutcome, FilterWork, Holder, SafetyFilter};
+use super::settling::Settling;
 use super::step::Step;
 use super::step_context::StepContext;
 use super::target_stream::Arrival;
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
 use super::way_back::{EndOfTick, Next, WayBack};
+use crate::constraint::{Keep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{JointOutside, Limits};
@@ -38,10 +41,12 @@ pub struct Session {
     running: RunningRule,
     goals: Goals,
     surroundings: Surroundings,
-    /// Safety filter, present if collisions are to be avoided or pairs of tips may be held.
+    /// Safety filter, present if collisions are to be avoided, something is to be kept or pairs of tips may be held.
     safety: Option<Box<SafetyFilter>>,
     /// Way back of an arm that comes no nearer to its target; `None` for other rules, and tasks with a region.
     way_back: Option<Box<WayBack>>,
+    /// Rest of an arm that comes no nearer; `None` where there is no way back.
+    settling: Option<Settling>,
     /// Whether the arm brakes until a target arrives.
     stopping: bool,
     seed: u64,
@@ -66,15 +71,17 @@ impl Session {
         let goals = Goals::new(&options.goals, &arm.robot, &ranges);
         let surroundings = options.surroundings.clone();
         let space = surroundings.clear_space(&arm.robot)?;
-        let filters = !arm.has_one_tip() || space.is_some();
-        let safety = if filters { Some(Box::new(SafetyFilter::new(space, &arm.limits)?)) } else { None };
+        let kept = kept_by(&options.keeps, robot, &arm)?;
+        let filters = !arm.has_one_tip() || space.is_some() || kept.is_some();
+        let safety = if filters { Some(Box::new(SafetyFilter::new(space, kept, &arm.limits)?)) } else { None };
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
         let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
             arm.robot.solves_at_once(); // prepares the closed form
             Box::new(WayBack::new(&arm.limits, options.recover))
         });
-        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, stopping: false, seed, rng })
+        let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
+        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, settling, stopping: false, seed, rng })
     }
 
     /// Accepted configuration (n,).
@@ -207,6 +214,7 @@ impl Session {
         let sampled_ago = self.arm.targets.take(arrival, to)?.map(|ago| ago / self.arm.dt);
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
+        let settled = self.is_settled();
         let mut found = if self.stopping || self.arm.targets.last().is_empty() {
             self.arm.allow_braking();
             self.brake()
@@ -216,10 +224,11 @@ impl Session {
             self.arm.allow_braking();
             found
         };
-        let held = !found.interrupted && !self.stopping && self.filter(&mut found);
+        let held = if found.interrupted || self.stopping { None } else { self.filter(settled, &mut found) };
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
+            self.watch_for_rest(&found, status);
             self.arm.accept(&found.q, found.assessment.score.value);
             self.look_for_way_back(&mut found, monitor);
         }
@@ -320,13 +329,16 @@ impl Session {
         found
     }
 
-    fn status(&self, found: &TickResult, held: bool) -> Status {
+    fn status(&self, found: &TickResult, held: Option<Holder>) -> Status {
         let Score { value, solved } = found.assessment.score;
         match self.arm.last_value {
             _ if !self.is_clear(&found.q) => Status::InCollision,
             _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
-            _ if held || self.goal_is_held() => Status::HeldByObstacle,
+            _ if let Some(holder) = held.or(self.holds_goal()) => match holder {
+                Holder::Body => Status::HeldByObstacle,
+                Holder::Constraint => Status::HeldByConstraint,
+            },
             _ if let Some(status) = self.arm.given_up(&found.assessment.error) => status,
             Some(last) if value >= last => Status::Capped,
             // Other rules may take steps as short as these.
@@ -335,27 +347,66 @@ impl Session {
         }
     }
 
-    /// Whether obstacles keep the goal from its target; false while the arm stops.
-    fn goal_is_held(&self) -> bool {
-        !self.stopping && self.safety.as_ref().is_some_and(|safety| safety.goal_is_held())
+    /// What keeps the goal from its target; nothing while the arm stops.
+    fn holds_goal(&self) -> Option<Holder> {
+        self.safety.as_ref().filter(|_| !self.stopping).and_then(|safety| safety.holds_goal())
     }
 
-    /// Changes the command `found` by the rule to one that keeps the arm clear and holds pairs of tips. Returns whether
-    /// obstacles or other links caused the change.
-    fn filter(&mut self, found: &mut TickResult) -> bool {
-        let Some(safety) = &mut self.safety else { return false };
+    /// Whether the arm stays at rest because it comes no nearer to its targets.
+    fn is_settled(&mut self) -> bool {
+        let moves = self.stopping || self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
+        match &mut self.settling {
+            Some(settling) if !moves => settling.begin_tick(self.arm.targets.last()),
+            Some(settling) => {
+                settling.restart();
+                false
+            }
+            None => false,
+        }
+    }
+
+    /// Ends a tick for the rest of an arm that comes no nearer. Obstacles that move may yet free it.
+    fn watch_for_rest(&mut self, found: &TickResult, status: Status) {
+        let Some(settling) = &mut self.settling else { return };
+        if self.safety.as_ref().is_some_and(|safety| safety.sees_motion()) {
+            settling.restart();
+            return;
+        }
+        let is_held = match status {
+            Status::HeldByObstacle | Status::HeldByConstraint => true,
+            Status::Solved => self.goals.is_empty(),
+            _ => self.way_back.as_ref().is_some_and(|way_back| way_back.away().is_some()),
+        };
+        settling.end_tick(&found.assessment, is_held, self.arm.rests_at(&found.q), self.arm.dt);
+    }
+
+    /// Changes the command `found` by the rule to one that keeps the arm clear and all constraints, and holds pairs of tips or, for a
+    /// `settled` arm, to the braking one. Returns what caused the change, if it was not the pairs.
+    fn filter(&mut self, settled: bool, found: &mut TickResult) -> Option<Holder> {
+        let Some(safety) = &mut self.safety else {
+            if settled {
+                found.q = self.arm.context().braking();
+                self.note_changed(found);
+            }
+            return None;
+        };
         let context = self.arm.context();
         // On a way back the distance from the target shows no progress: the targets do not judge the commands.
         let is_returning = self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
         let context = if is_returning { StepContext { aims: Aims::default(), ..context } } else { context };
-        let FilterOutcome { changed, by_obstacles } = safety.filter(&context, &mut found.q);
+        let FilterOutcome { changed, held_by } = safety.filter(&context, settled, &mut found.q);
         if changed {
-            self.arm.assess(found);
-            if self.arm.limited.is_none() {
-                self.running.forget();
-            }
+            self.note_changed(found);
         }
-        by_obstacles
+        held_by
+    }
+
+    /// Assesses a command that is not the one of the rule.
+    fn note_changed(&mut self, found: &mut TickResult) {
+        self.arm.assess(found);
+        if self.arm.limited.is_none() {
+            self.running.forget();
+        }
     }
 
     /// Whether all bodies keep the margin at `q`; true if collisions are not checked.
@@ -371,6 +422,16 @@ impl Session {
     /// Work of the safety filter since it began, with the first obstacles or pairs of tips; zero without either.
     pub fn filter_work(&self) -> FilterWork {
         self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
+    }
+
+    /// What is kept at every instant.
+    pub fn keeps(&self) -> &[Keep] {
+        self.safety.as_ref().and_then(|safety| safety.kept()).map_or(&[], Kept::keeps)
+    }
+
+    /// The constraint nearest to its tolerance, in words; `None` if nothing is kept.
+    pub fn tightest(&self) -> Option<String> {
+        self.safety.as_ref()?.kept()?.tightest_at(&self.arm.q)
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
@@ -389,15 +450,19 @@ impl Session {
     /// # Errors
     /// As [`new`](Self::new); the session is then as before.
     pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
+        let rest = velocities.is_empty() && self.obstacle_velocities().is_empty();
+        if rest && obstacles == self.surroundings.obstacles {
+            return Ok(()); // A loop that gives the same in every tick frees no arm.
+        }
         let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
         let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
         // A margin given before is kept for obstacles that may come later.
         let space =
             if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
-        if space.is_some() || !self.arm.has_one_tip() {
+        if space.is_some() || !self.arm.has_one_tip() || !self.keeps().is_empty() {
             let safety = match self.safety.take() {
                 Some(safety) => self.safety.insert(safety),
-                None => self.safety.insert(Box::new(SafetyFilter::new(None, &self.arm.limits)?)),
+                None => self.safety.insert(Box::new(SafetyFilter::new(None, None, &self.arm.limits)?)),
             };
             safety.replace(space, motion, &self.arm.limits)?;
         } else {
@@ -407,6 +472,7 @@ impl Session {
         if let Some(way_back) = &mut self.way_back {
             way_back.note_replaced();
         }
+        self.settling.iter_mut().for_each(Settling::restart);
         Ok(())
     }
 
@@ -473,11 +539,15 @@ impl Session {
     /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
     /// stop inside its limits.
     pub fn reset(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
+        if let Some(kept) = self.safety.as_ref().and_then(|safety| safety.kept()) {
+            refuse_broken("q", kept.keeps(), kept.robot(), q)?;
+        }
         self.arm.reset(q, [qd, qdd])?;
         self.stopping = false;
         if let Some(way_back) = &mut self.way_back {
             way_back.restart();
         }
+        self.settling.iter_mut().for_each(Settling::restart);
         self.start_rule();
         if let Some(safety) = &mut self.safety {
             safety.forget();
@@ -485,4 +555,16 @@ impl Session {
         self.rng = rng::stream(self.seed, 0);
         Ok(())
     }
+}
+
+/// The constraints `keeps` of an arm, which hold where it starts; `None` without any.
+///
+/// # Errors
+/// [`Error::Contradiction`] for a start that breaks a constraint.
+fn kept_by(keeps: &[Keep], robot: &Robot, arm: &TrackedArm) -> Result<Option<Kept>> {
+    if keeps.is_empty() {
+        return Ok(None);
+    }
+    refuse_broken("start", keeps, robot, &arm.q)?;
+    Ok(Some(Kept::new(Arc::new(robot.clone()), keeps.to_vec())))
 }

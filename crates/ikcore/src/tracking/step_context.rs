@@ -41,10 +41,10 @@ impl<'a> StepContext<'a> {
         self.tick_box.bounds.ends()
     }
 
-    /// Position limits of the tick.
+    /// Position limits of the tick, with the weights of the joints.
     pub fn positions(&self) -> Bounds {
         let range = |j: usize| self.limits.position_range(j, self.time, self.time + self.dt).into();
-        Bounds::from_ranges((0..self.q.len()).map(range))
+        Bounds::from_ranges((0..self.q.len()).map(range)).weighted(self.tick_box.bounds.weights().cloned())
     }
 
     /// Request for a step in the box.

@@ -48,6 +48,8 @@ pub(super) struct TargetStream {
     last: Option<Arrival>,
     /// Targets at the end of the previous tick.
     before: Option<Arrival>,
+    /// Whether they had moved in that tick.
+    moved_before: bool,
     /// Times at which the last targets were measured and arrived (s).
     measured: f64,
     arrived: f64,
@@ -62,7 +64,17 @@ impl TargetStream {
         timeout.map_or(Ok(()), |timeout| require_positive("timeout", timeout))?;
         filter.map_or(Ok(()), |filter| filter.validate())?;
         let (filters, measured) = (vec![], f64::NEG_INFINITY);
-        Ok(Self { filter, filters, timeout, repeated, last: None, before: None, measured, arrived: 0.0 })
+        Ok(Self {
+            filter,
+            filters,
+            timeout,
+            repeated,
+            last: None,
+            before: None,
+            moved_before: false,
+            measured,
+            arrived: 0.0,
+        })
     }
 
     /// Last targets, filtered; empty before the first.
@@ -91,6 +103,11 @@ impl TargetStream {
     pub fn moves(&self) -> bool {
         let both = self.before.as_ref().zip(self.last.as_ref());
         both.is_none_or(|(before, last)| before.targets != last.targets)
+    }
+
+    /// Whether the targets stand still, or have jumped there from rest: there is time to reach them.
+    pub fn stand(&self) -> bool {
+        self.before.is_none() || !self.moves() || !self.moved_before
     }
 
     /// Sets the targets at t = 0.
@@ -144,12 +161,13 @@ impl TargetStream {
 
     /// Ends the tick.
     pub fn accept(&mut self) {
+        self.moved_before = self.before.is_some() && self.moves();
         self.before.clone_from(&self.last);
     }
 
     /// Discards targets and filters, because the next targets belong to other tasks.
     pub fn begin_anew(&mut self) {
-        (self.last, self.before) = (None, None);
+        (self.last, self.before, self.moved_before) = (None, None, false);
         self.filters.clear();
         self.expect_new();
     }

@@ -5,13 +5,15 @@ use super::record::Record;
 use super::session::Session;
 use super::tip_paths::TipPaths;
 use super::track_options::TrackOptions;
+use crate::constraint::Onto;
 use crate::error::{Error, Result};
-use crate::ik::{Prefer, SolveOptions, solve_tips};
+use crate::ik::{Prefer, SolveOptions, checked_tasks, reduce, solve_tips};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, Limits, Profile};
 use crate::manipulability::Motion;
 use crate::message::{Setting, message};
 use crate::path::Reference;
+use crate::rng;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::task::{Goal, NamedTask, Target, Tolerance};
@@ -56,11 +58,18 @@ pub fn track_tips(
     let only = options.only_task()?; // checked before a start is solved with other tolerances
     let start = match start {
         Some(q) => q.to_vec(),
-        None => first_configuration(robot, asked, &limits, options, monitor)?,
+        None => {
+            let found = first_configuration(robot, asked, &limits, options, monitor)?;
+            where_all_holds(robot, asked, &limits, options, found)?
+        }
     };
     let mut session = Session::new(robot, &start, first.dt(), options)?;
     if options.ease && session.space().is_some() {
         let does = " is not kept clear of obstacles: leave one of the two out, or plan to the path first";
+        return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
+    }
+    if options.ease && !session.keeps().is_empty() {
+        let does = " does not keep constraints: leave one of the two out, or plan to the path first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
@@ -166,6 +175,36 @@ fn first_configuration(
         return Ok(chosen.q.to_vec());
     }
     Ok(solve_tips(robot, &targets, &SolveOptions { stop: Stop::default(), ..best }, monitor)?.q.to_vec())
+}
+
+/// Configurations, drawn at random, from which one is sought where all constraints hold.
+const STARTS: usize = 30;
+
+/// A configuration on the first points of the paths at which all constraints hold: `found` itself, one near it, or one near a drawn
+/// configuration; `found` if there is none.
+fn where_all_holds(
+    robot: &Robot,
+    asked: &TipPaths<'_>,
+    limits: &Limits,
+    options: &TrackOptions,
+    found: Vec<f64>,
+) -> Result<Vec<f64>> {
+    if options.keeps.iter().all(|keep| keep.holds(robot, &found)) {
+        return Ok(found);
+    }
+    let mut targets = asked.targets(0);
+    let tasks = if asked.tips.is_empty() { vec![options.only_task()?] } else { checked_tasks(robot, asked.tips)? };
+    reduce(robot, &tasks, &mut targets)?;
+    let bounds = limits_at_start(robot, limits)?.position_box()?;
+    let mut onto = Onto::new(robot, &options.keeps, bounds.ends()).reaching(tasks.into_iter().zip(targets));
+    let drawn = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
+    for from in std::iter::once(&found[..]).chain(drawn.chunks(robot.dof())) {
+        let mut near = from.to_vec();
+        if onto.bring(&mut near) {
+            return Ok(near);
+        }
+    }
+    Ok(found)
 }
 
 /// Position limits at t = 0.

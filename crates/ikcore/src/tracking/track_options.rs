@@ -1,13 +1,23 @@
 //! Options of `track` and of a session.
 
+use std::sync::Arc;
+
 use super::rule::TickRule;
 use super::target_filter::TargetFilter;
+use crate::constraint::Keep;
 use crate::error::{Error, Result};
+use crate::ik::joint_weights;
 use crate::limits::{LimitAt, Limits, StartSlack};
-use crate::message::Setting;
+use crate::math::JointWeights;
+use crate::message::{Setting, message};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
+
+/// Largest effect of one joint in a weighted step, relative to that of the tip; less under acceleration or jerk limits, where light
+/// joints near a singularity have to slow down in time.
+const LARGEST_EFFECT: f64 = 10.0;
+const LARGEST_EFFECT_UNDER_ACCELERATION: f64 = 4.0;
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
 #[derive(Debug, Clone)]
@@ -18,6 +28,9 @@ pub struct TrackOptions {
     pub task: Option<Task>,
     /// Goals in the null space of the task.
     pub goals: Vec<Goal>,
+    /// Cost of moving each joint (n,), positive: of the motions that follow the target, the one with the least sum of (weight *
+    /// dq)^2. `None` means that all joints cost the same. It is for the library's own rule.
+    pub joint_weights: Option<Vec<f64>>,
     /// The error band.
     pub tolerance: Tolerance,
     /// Limits to keep. `None` means the robot's.
@@ -35,6 +48,8 @@ pub struct TrackOptions {
     pub ease: bool,
     /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
+    /// What is kept at every instant, between ticks too, and by the stop after each; nothing by default.
+    pub keeps: Vec<Keep>,
     /// Whether an arm that comes no nearer to its target, though a configuration on it is known, goes there by a motion of its
     /// joints; true by default. It is for the library's own rule, and tasks without a region.
     pub recover: bool,
@@ -48,6 +63,7 @@ impl Default for TrackOptions {
             rule: TickRule::default(),
             task: None,
             goals: vec![],
+            joint_weights: None,
             tolerance: Tolerance::default(),
             limits: None,
             limit_at: LimitAt::default(),
@@ -55,6 +71,7 @@ impl Default for TrackOptions {
             timeout: None,
             ease: false,
             surroundings: Surroundings::default(),
+            keeps: vec![],
             recover: true,
             start_slack: StartSlack::default(),
             seed: 0,
@@ -68,9 +85,10 @@ impl TrackOptions {
         NamedTask::of_only(self.task, self.tolerance).validated()
     }
 
-    /// Checks that rule and task support the robot's number of tips.
+    /// Checks that rule and task support the robot's number of tips, and that it has those of the constraints.
     pub(super) fn require_tips(&self, robot: &Robot) -> Result<()> {
         self.rule.require_tips(robot)?;
+        self.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
         if self.task.is_some() { robot.require_one_tip(Setting::OneTask) } else { Ok(()) }
     }
 
@@ -81,6 +99,20 @@ impl TrackOptions {
             return Err(Error::Contradiction { problem: problem.into() });
         }
         self.goals.iter().try_for_each(|goal| goal.validate(robot, false))
+    }
+
+    /// Weights of the joints of `robot`, if they differ; `under_acceleration` is true with acceleration or jerk limits.
+    pub(super) fn weights_for(&self, robot: &Robot, under_acceleration: bool) -> Result<Option<Arc<JointWeights>>> {
+        if self.joint_weights.is_some() && !self.rule.is_own() {
+            let problem = message![
+                Setting::JointWeights,
+                " need the library's own rule, with solver left out; WeightedPseudoInverse has weights of its own"
+            ];
+            return Err(Error::Contradiction { problem });
+        }
+        let weights = joint_weights(robot, self.joint_weights.as_deref())?;
+        let largest_effect = if under_acceleration { LARGEST_EFFECT_UNDER_ACCELERATION } else { LARGEST_EFFECT };
+        Ok(weights.map(|weights| Arc::new(weights.fading_at(largest_effect))))
     }
 
     /// Limits in force for `robot`.

@@ -64,9 +64,10 @@ impl TrackedArm {
         robot.check("start", start)?;
         let AdmittedStart { q, outside } = limits.admit_start(Some(robot), "start", start, &options.start_slack)?;
         let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
+        let weights = options.weights_for(&robot, limited.is_some())?;
         let arm = Self {
             robot,
-            tick_box: TickBox::around(&q, &limits),
+            tick_box: TickBox::around(&q, &limits).weighted(weights),
             limited,
             lock: limits.lock().map(Arc::new),
             limits,

@@ -11,6 +11,7 @@ use super::tpbso::read_method;
 use crate::convert::{array, count, rigid_matrices, shape_text};
 use crate::error::{invalid, raise};
 use crate::joint_order::joint_vector;
+use crate::keep::read_keeps;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::GivenObstacles;
@@ -34,6 +35,8 @@ use crate::wording::said;
 ///     task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
 ///         `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
 ///         whole pose.
+///     keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
+///         path leaves free stays upright.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
@@ -57,8 +60,8 @@ use crate::wording::said;
 ///     IN_COLLISION, and the message names the place on the path, the two bodies and the depth.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, or obstacles and
-///         a robot without bodies.
+///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
+///         a robot without bodies, or a start_q at which `keep` does not hold.
 ///     LimitError: limits that contradict each other; a start farther outside them than start_slack.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
@@ -71,9 +74,9 @@ use crate::wording::said;
 ///     >>> plan.success
 ///     True
 #[pyfunction]
-#[pyo3(signature = (robot, path, *, start_q=None, start_slack=None, task=None, limits=None, method=None, objective="time", obstacles=None,
+#[pyo3(signature = (robot, path, *, start_q=None, start_slack=None, task=None, keep=None, limits=None, method=None, objective="time", obstacles=None,
                     margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),
-       text_signature = "(robot, path, *, start_q=None, start_slack=None, task=None, limits=None, method='timed', objective='time', \
+       text_signature = "(robot, path, *, start_q=None, start_slack=None, task=None, keep=None, limits=None, method='timed', objective='time', \
                          obstacles=None, margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, \
                          progress=None)")]
 #[allow(clippy::too_many_arguments)]
@@ -84,6 +87,7 @@ pub fn plan_along_path(
     start_q: Option<&Bound<'_, PyAny>>,
     start_slack: Option<&Bound<'_, PyAny>>,
     task: Option<&Bound<'_, PyAny>>,
+    keep: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     method: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] objective: &str,
@@ -109,6 +113,7 @@ pub fn plan_along_path(
         start: start_q.map(|q| joint_vector(&arm, "start_q", q)).transpose()?,
         start_slack: read_slack(start_slack)?,
         task: read_task(task)?,
+        keeps: read_keeps(robot.get(), keep)?,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,
         accuracy,

@@ -175,7 +175,7 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 ///         others. The arguments of a problem override the common ones.
 ///     threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
 ///     progress: True shows a progress bar; a callable is called with (done, total).
-///     approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+///     approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
 ///         `plan_point_to_point`, for all problems.
 ///
 /// Returns:
@@ -195,10 +195,10 @@ fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
 ///     >>> plans.success.tolist()
 ///     [True, True, False]
 #[pyfunction]
-#[pyo3(signature = (robot, problems, *, threads=None, progress=None, start_slack=None, end_turns=None, approach=None, retreat=None, free_start=None, task=None,
+#[pyo3(signature = (robot, problems, *, threads=None, progress=None, start_slack=None, end_turns=None, approach=None, retreat=None, free_start=None, task=None, keep=None,
                     limits=None, method=None, objective=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=None),
        text_signature = "(robot, problems, *, threads=None, progress=None, start_slack=None, end_turns='nearest', approach=None, retreat=None, \
-                         free_start=False, task=None, limits=None, method='minmax', objective='time', obstacles=None, \
+                         free_start=False, task=None, keep=None, limits=None, method='minmax', objective='time', obstacles=None, \
                          margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_batch<'py>(
@@ -213,6 +213,7 @@ pub fn plan_batch<'py>(
     retreat: Option<Bound<'py, PyAny>>,
     free_start: Option<Bound<'py, PyAny>>,
     task: Option<Bound<'py, PyAny>>,
+    keep: Option<Bound<'py, PyAny>>,
     limits: Option<Bound<'py, PyAny>>,
     method: Option<Bound<'py, PyAny>>,
     objective: Option<Bound<'py, PyAny>>,
@@ -230,6 +231,7 @@ pub fn plan_batch<'py>(
         retreat,
         free_start,
         task,
+        keep,
         limits,
         method,
         objective,

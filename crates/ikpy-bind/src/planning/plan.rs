@@ -2,16 +2,18 @@
 
 use std::sync::OnceLock;
 
+use ikcore::constraint::Keep;
 use ikcore::obstacle::Clearance;
 use ikcore::planning::Plan;
 use ikcore::stored::to_bytes;
-use numpy::PyArrayDyn;
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::violation::PyViolation;
-use crate::convert::table;
+use crate::convert::{row, table};
 use crate::error::raise;
+use crate::keep::PyKeep;
 use crate::limits::{PyLimits, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
 use crate::obstacle::PyNearest;
@@ -52,6 +54,8 @@ pub struct PyPlan {
     limits: Py<PyLimits>,
     /// Smallest clearance on the trajectory, computed at the first access.
     least_clearance: OnceLock<Option<Clearance>>,
+    /// Largest errors of what is kept, computed at the first access.
+    kept: OnceLock<Vec<Vec<f64>>>,
 }
 
 traversed!(PyPlan: obstacles, robot, limits);
@@ -128,13 +132,31 @@ impl PyPlan {
         self.core.freed.map(|freed| (freed.clearance, freed.until))
     }
 
+    /// What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+    /// the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
+    /// at most a hundredth of the tolerance too large, computed at the first access.
+    #[getter]
+    fn kept<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyKeep, Bound<'py, PyArray1<f64>>)>> {
+        let robot = &self.robot.get().core;
+        let largest = match self.kept.get() {
+            Some(known) => known,
+            None => {
+                let found = long_call(py, || Ok(self.core.kept(robot)))?;
+                self.kept.get_or_init(|| found)
+            }
+        };
+        let pair = |(keep, largest): (&Keep, &Vec<f64>)| (PyKeep::from_core(keep, robot), row(py, largest.clone()));
+        Ok(self.core.keeps.iter().zip(largest).map(pair).collect())
+    }
+
     /// The bounds that the trajectory exceeds, a list of `Violation`; empty on success.
     #[getter]
     fn violations(&self) -> Vec<PyViolation> {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
-    /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain.
+    /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
+    /// the plan keeps on the way, which is certified again.
     ///
     /// A plan of `plan_along_path` with method "timed" gets a new optimal timing. Any other motion is scaled in time as
     /// a whole and passes exactly the same configurations.
@@ -145,7 +167,7 @@ impl PyPlan {
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
     ///     InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
-    ///         acceleration jumps, or a margin that the motion smoothed for jerk limits does not keep.
+    ///         acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
     ///     UnsupportedLimit: limits that vary in time.
     fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let robot = self.robot.bind(py);
@@ -202,6 +224,7 @@ impl PyPlan {
             robot: robot.clone().unbind(),
             limits,
             least_clearance: OnceLock::new(),
+            kept: OnceLock::new(),
             core,
         })
     }

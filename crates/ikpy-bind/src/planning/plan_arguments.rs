@@ -14,6 +14,7 @@ use super::straight_line::read_line;
 use super::tpbso::read_method;
 use crate::convert::{count, summary, text, vector};
 use crate::error::{invalid, misfit, raise};
+use crate::keep::read_keeps;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::obstacle::GivenObstacles;
 use crate::python_calls;
@@ -51,6 +52,7 @@ pub struct PlanArguments<'py> {
     pub retreat: Argument<'py>,
     pub free_start: Argument<'py>,
     pub task: Argument<'py>,
+    pub keep: Argument<'py>,
     pub limits: Argument<'py>,
     pub method: Argument<'py>,
     pub objective: Argument<'py>,
@@ -111,6 +113,7 @@ impl PlanArguments<'_> {
                 Some(task) if robot.core.tip_count() == 1 => read_task(Some(&plain("task", robot, task)?))?,
                 _ => None,
             },
+            keeps: read_keeps(robot, self.keep.as_ref())?,
             method: read_method(self.method.as_ref())?,
             objective: objective.map_or(Ok(Default::default()), str::parse).map_err(raise)?,
             surroundings: Surroundings {
@@ -181,7 +184,7 @@ macro_rules! named {
 
 named!(EndArguments: start, end, start_q, end_q);
 named!(
-    PlanArguments: start_qd, start_slack, end_turns, approach, retreat, free_start, task, limits, method, objective, obstacles, margin,
+    PlanArguments: start_qd, start_slack, end_turns, approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin,
     self_collision, stop, seed
 );
 

@@ -30,6 +30,8 @@ use crate::wording::said;
 ///     free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
 ///         bodies come nearer than at the start; see `Plan.freed`.
 ///     task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
+///     keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+///         not sampled; `Plan.kept` has the largest errors.
 ///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -46,7 +48,7 @@ use crate::wording::said;
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
-///         only if none can be reached.
+///         only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
 ///     LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
 ///         joint and the remedy).
 ///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
@@ -62,10 +64,10 @@ use crate::wording::said;
 ///     True
 #[pyfunction]
 #[pyo3(signature = (robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, start_slack=None, end_turns=None,
-                    approach=None, retreat=None, free_start=None, task=None, limits=None, method=None, objective=None, obstacles=None, margin=None,
+                    approach=None, retreat=None, free_start=None, task=None, keep=None, limits=None, method=None, objective=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=None, progress=None),
        text_signature = "(robot, start=None, end=None, *, start_q=None, end_q=None, start_qd=None, start_slack=None, \
-                         end_turns='nearest', approach=None, retreat=None, free_start=False, task=None, limits=None, method='minmax', objective='time', \
+                         end_turns='nearest', approach=None, retreat=None, free_start=False, task=None, keep=None, limits=None, method='minmax', objective='time', \
                          obstacles=None, margin=None, self_collision=None, stop=None, seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_point_to_point<'py>(
@@ -82,6 +84,7 @@ pub fn plan_point_to_point<'py>(
     retreat: Option<Bound<'py, PyAny>>,
     free_start: Option<Bound<'py, PyAny>>,
     task: Option<Bound<'py, PyAny>>,
+    keep: Option<Bound<'py, PyAny>>,
     limits: Option<Bound<'py, PyAny>>,
     method: Option<Bound<'py, PyAny>>,
     objective: Option<Bound<'py, PyAny>>,
@@ -102,6 +105,7 @@ pub fn plan_point_to_point<'py>(
         retreat,
         free_start,
         task,
+        keep,
         limits,
         method,
         objective,

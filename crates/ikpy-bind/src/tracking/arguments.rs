@@ -1,5 +1,6 @@
 //! Reading of the arguments that `track` and `Tracker` share.
 
+use ikcore::constraint::Keep;
 use ikcore::limits::{LimitAt, Limits};
 use ikcore::obstacle::Surroundings;
 use ikcore::task::{Task, Tolerance};
@@ -19,7 +20,10 @@ pub struct TrackArguments<'a, 'py> {
     /// Task and tolerance of the only tip; the tasks of several tips are passed separately.
     pub only: (Option<Task>, Tolerance),
     pub goals: Option<&'a Bound<'py, PyAny>>,
+    /// Weights of the joints, as read.
+    pub joint_weights: Option<Vec<f64>>,
     pub surroundings: Surroundings,
+    pub keeps: Vec<Keep>,
     pub recover: bool,
     pub seed: i128,
     pub limit_at: &'a str,
@@ -34,9 +38,11 @@ impl TrackArguments<'_, '_> {
             rule: self.rule,
             task,
             goals: read_goals(self.goals)?,
+            joint_weights: self.joint_weights,
             tolerance,
             limits,
             surroundings: self.surroundings,
+            keeps: self.keeps,
             ease: false,
             start_slack: read_slack(self.start_slack)?,
             recover: self.recover,

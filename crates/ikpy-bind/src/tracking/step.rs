@@ -49,6 +49,8 @@ pub struct PyStep {
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Names the joints that limits of zero lock.
     lock: Option<Arc<Message>>,
+    /// The constraint that holds the arm, in words.
+    held_by: Option<String>,
     /// Sentence about a target whose rotation had drifted.
     drift: Option<String>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
@@ -62,8 +64,8 @@ outcome! {
     /// Whether the tip is within the tolerances.
     success,
     /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
-    /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; IMPROVED if nearer than in the previous step;
-    /// otherwise CAPPED.
+    /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+    /// IMPROVED if nearer than in the previous step; otherwise CAPPED.
     status: result.core.status,
     message: result.sentence(),
     /// Evaluations of the forward kinematics.
@@ -123,12 +125,15 @@ impl PyStep {
         let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, around, &self.outside, &self.joints);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
         let lock = self.lock.as_deref().map(said);
-        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift))
+        pickling::restored_from::<Self>(
+            py,
+            (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift, &self.held_by),
+        )
     }
 
     /// Restores a pickled value.
     #[staticmethod]
-    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None))]
+    #[pyo3(signature = (bytes, limits, tips=None, lock=None, drift=None, held_by=None))]
     fn _restore(
         py: Python<'_>,
         bytes: &[u8],
@@ -136,13 +141,14 @@ impl PyStep {
         tips: Option<&[u8]>,
         lock: Option<String>,
         drift: Option<String>,
+        held_by: Option<String>,
     ) -> PyResult<Self> {
         let (core, q, qd, elapsed, around, outside, joints): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _, _) =
             from_bytes("step", bytes).map_err(raise)?;
         let tips = TipErrors::restored(tips)?;
         let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside).naming(joints);
         let lock = lock.map(|lock| Arc::new(lock.into()));
-        Ok(Self { around: OnceLock::from(around), lock, drift, ..step })
+        Ok(Self { around: OnceLock::from(around), lock, drift, held_by, ..step })
     }
 }
 
@@ -161,6 +167,7 @@ impl PyStep {
             joints: vec![],
             among: None,
             lock: None,
+            held_by: None,
             drift: None,
             around: OnceLock::new(),
         }
@@ -179,6 +186,11 @@ impl PyStep {
     /// Adds the drift of the target's rotation to the message.
     pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
         Self { drift: drift.map(|drift| drift.to_string()), ..self }
+    }
+
+    /// Adds the constraint that holds the arm, in words.
+    pub fn held_by(self, held_by: Option<String>) -> Self {
+        Self { held_by, ..self }
     }
 
     /// Adds the names of the joints.
@@ -221,7 +233,10 @@ impl PyStep {
                 let Contact { link, other, distance } = contact;
                 format!("{} ({link} is {distance:.4} m from {other})", said(&message)).into()
             }
-            _ => message,
+            _ => match &self.held_by {
+                Some(held_by) => format!("{} ({held_by})", said(&message)).into(),
+                None => message,
+            },
         }
     }
 }

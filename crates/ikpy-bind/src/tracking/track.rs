@@ -14,7 +14,8 @@ use super::record::{Columns, counts, record};
 use crate::convert::{row, table};
 use crate::error::{invalid, raise};
 use crate::ik::read_target;
-use crate::joint_order::joint_vector;
+use crate::joint_order::{joint_numbers, joint_vector};
+use crate::keep::read_keeps;
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched;
 use crate::obstacle::read_surroundings;
@@ -213,6 +214,9 @@ impl PyTrackResult {
 ///         `Limits(velocity=np.inf)` says that jumps are meant.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
+///     joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
+///         that a base of weight 100 stays where the arm can do it, and still moves where only it can. Only ratios count, up to
+///         1e8. They need the model-based rule. None: all joints cost the same.
 ///     position_tolerance: error band of positions (m); for several tips also a dict.
 ///     rotation_tolerance: error band of orientations (rad); for several tips also a dict.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that the arm keeps clear of, between ticks too; an empty list for the
@@ -221,6 +225,8 @@ impl PyTrackResult {
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
 ///         several tips all of whose collision shapes are known.
+///     keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+///         each. The arm goes as near to the path as that allows. None: nothing.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
@@ -236,10 +242,11 @@ impl PyTrackResult {
 ///     A `TrackResult`. If the path cannot be followed, its status says why; that is not an error.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN, a time step that is not positive, or a joint that no limit slows down.
+///     InvalidInputError: wrong shape, NaN, a time step that is not positive, a joint that no limit slows down, or a start at which
+///         something in keep does not hold.
 ///     LimitError: a start farther outside its limits than start_slack, or a negative limit.
 ///     UnsupportedLimit: acceleration or jerk limits, or position limits that vary in time, with a task that has a
-///         region; position, acceleration or jerk limits that vary in time, among obstacles.
+///         region; position, acceleration or jerk limits that vary in time, among obstacles or with keep.
 ///
 /// For example:
 ///
@@ -251,11 +258,11 @@ impl PyTrackResult {
 ///     >>> track.q.shape
 ///     (501, 6)
 #[pyfunction]
-#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None,
+#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                    margin=None, self_collision=None, seed=0, limit_at="interval", ease=false, recover=true,
+                    margin=None, self_collision=None, keep=None, seed=0, limit_at="interval", ease=false, recover=true,
                     start_slack=None, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
+       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
@@ -267,11 +274,13 @@ pub fn track(
     solver: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     goals: Option<&Bound<'_, PyAny>>,
+    joint_weights: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
     #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
     self_collision: Option<bool>,
+    keep: Option<&Bound<'_, PyAny>>,
     seed: i128,
     #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
     ease: bool,
@@ -294,7 +303,10 @@ pub fn track(
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;
     let only = settings.of_only(robot.get());
-    let read = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
+    let keeps = read_keeps(robot.get(), keep)?;
+    let joint_weights = joint_weights.map(|weights| joint_numbers(&arm, "joint_weights", weights)).transpose()?;
+    let read =
+        TrackArguments { rule, only, goals, joint_weights, surroundings, keeps, recover, seed, limit_at, start_slack };
     let options = TrackOptions { ease, ..read.read(resolved)? };
     let (start, tips) = (start.as_deref(), settings.tasks(&asked));
     let paths = TipPaths { tips: &tips, paths: &references };

@@ -6,8 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ikcore::obstacle::Surroundings;
 use ikcore::robot::Robot;
-use ikcore::solver::Stopwatch;
-use ikcore::solver::Unattended;
+use ikcore::solver::{Status, Stopwatch, Unattended};
 use ikcore::task::TargetRow;
 use ikcore::tracking::{Arrival, Session, TickRule, TrackOptions};
 use ikcore::units::UnitDoubt;
@@ -21,7 +20,8 @@ use super::step::PyStep;
 use crate::convert::{drifted_rows, point, vector};
 use crate::error::{invalid, raise};
 use crate::ik::read_target_by;
-use crate::joint_order::joint_vector;
+use crate::joint_order::{joint_numbers, joint_vector};
+use crate::keep::{PyKeep, read_keeps};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
@@ -47,11 +47,12 @@ use crate::units;
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
 ///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
 ///         sample them.
-///     goals: as in `track`.
+///     goals, joint_weights: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
 ///     rotation_tolerance: largest rotation error (rad); for several tips also a dict.
 ///     obstacles, margin, self_collision: as in `track`; obstacles may also be `obstacles.Moving`, and may be replaced between
 ///         ticks: `tracker.obstacles = [...]`.
+///     keep: a `Keep`, for example from `upright`, or several, as in `track`. The stop after each command keeps them too.
 ///     seed: seed of the random draws.
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
@@ -98,11 +99,11 @@ in_progress!(PyTracker, Session);
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None,
+    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
-                        margin=None, self_collision=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
+                        margin=None, self_collision=None, keep=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
                         start_slack=None, recover=true),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
+           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -112,11 +113,13 @@ impl PyTracker {
         solver: Option<&Bound<'_, PyAny>>,
         limits: Option<&PyLimits>,
         goals: Option<&Bound<'_, PyAny>>,
+        joint_weights: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
         #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
         obstacles: Option<&Bound<'_, PyAny>>,
         margin: Option<f64>,
         self_collision: Option<bool>,
+        keep: Option<&Bound<'_, PyAny>>,
         seed: i128,
         #[pyo3(from_py_with = crate::convert::text)] limit_at: &str,
         target_filter: Option<&Bound<'_, PyAny>>,
@@ -135,7 +138,20 @@ impl PyTracker {
         let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
         let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read(robot.get())?;
         let only = settings.of_only(robot.get());
-        let asked = TrackArguments { rule, only, goals, surroundings, recover, seed, limit_at, start_slack };
+        let keeps = read_keeps(robot.get(), keep)?;
+        let joint_weights = joint_weights.map(|weights| joint_numbers(arm, "joint_weights", weights)).transpose()?;
+        let asked = TrackArguments {
+            rule,
+            only,
+            goals,
+            joint_weights,
+            surroundings,
+            keeps,
+            recover,
+            seed,
+            limit_at,
+            start_slack,
+        };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
         let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
@@ -229,7 +245,8 @@ impl PyTracker {
         let joints = if core.away.is_some() { names() } else { vec![] };
         let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
-        let step = step.among(space, q).of_tips(tips).naming(joints);
+        let held_by = (core.status == Status::HeldByConstraint).then(|| session.tightest()).flatten();
+        let step = step.among(space, q).of_tips(tips).naming(joints).held_by(held_by);
         Ok(step.led_from(outside).of_locked(lock).of_drifted_target(drift))
     }
 
@@ -284,6 +301,13 @@ impl PyTracker {
         self.doubt_once(|robot| units::of_obstacles(robot, &given.as_ref()?.shapes))?;
         let (shapes, velocities) = given.map_or((None, vec![]), |given| (Some(given.shapes), given.velocities));
         self.session().set_obstacles(shapes, velocities).map_err(raise)
+    }
+
+    /// What holds at every instant, a tuple of `Keep`.
+    #[getter]
+    fn keep<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let (session, robot) = (self.session(), &self.robot.get().core);
+        PyTuple::new(py, session.keeps().iter().map(|keep| PyKeep::from_core(keep, robot)))
     }
 
     fn __repr__(&self) -> String {

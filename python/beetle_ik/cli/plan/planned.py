@@ -91,6 +91,7 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
         "end_q": plan.trajectory.at(plan.trajectory.duration)[0],
         "accuracy": plan.accuracy,
         "clearance": plan.clearance,
+        "tilt": plan.kept[0][1][-1] if plan.kept else math.nan,
         "violations": [str(violation) for violation in plan.violations],
         "largest_velocity": plan.trajectory.max_velocity(),
         "largest_acceleration": plan.trajectory.max_acceleration(),
@@ -105,6 +106,8 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
         rows.append(("distance from the path, at most [m]", f"{plan.accuracy:.3g}"))
     if not math.isnan(plan.clearance):  # planned among obstacles
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
+    if not math.isnan(summary["tilt"]):
+        rows.append(("largest tilt [rad]", f"{summary['tilt']:.4g}"))
     rows += [("violation", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
     print_pairs(f"{plan.robot.name}: {summary['message']}", rows)

@@ -5,22 +5,26 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, Scene, plan_point_to_point, pose
+from ... import InvalidInputError, Scene, plan_point_to_point, pose, tasks
 from ...papers import TPBSO
 from ..options import (
     Acceleration,
     AsJson,
     BaseLink,
+    First,
     Jerk,
     LinkRadius,
     Margin,
     RobotName,
     SceneFile,
     Seed,
+    Tilt,
     TipLink,
     Trusted,
+    Up,
     UrdfFile,
     Velocity,
+    kept_upright,
     load_robot,
     numbers,
 )
@@ -74,6 +78,9 @@ def point_to_point(
         float | None, typer.Option(metavar="M", help="Length in m of a straight line of the tip after the start.")
     ] = None,
     free_start: Annotated[bool, typer.Option("--free-start", help="Move out of a contact at the start first.")] = False,
+    first: First = None,
+    tilt: Tilt = None,
+    up: Up = None,
     scene: SceneFile = None,
     margin: Margin = None,
     link_radius: LinkRadius = None,
@@ -95,6 +102,7 @@ def point_to_point(
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
     chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, max_evaluations)
+    keep = kept_upright(arm, tilt, up)
     obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_point_to_point(
@@ -104,6 +112,8 @@ def point_to_point(
             approach=approach,
             retreat=retreat,
             free_start=free_start,
+            task=None if first is None else tasks.Pose(first=first.value),
+            keep=keep,
             obstacles=obstacles,
             margin=margin,
             seed=seed,

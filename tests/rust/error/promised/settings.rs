@@ -7,6 +7,11 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
     let nan = Sinusoid { mean: NAN, amplitude: 1.0, angular_frequency: 1.0, phase: 0.0 };
     let within = || Region::new([0.0; 3], [1.0; 3]).unwrap();
     let weighed = |kind, weights: &[f64]| Task::new(kind, Some(weights), None, None);
+    let unbounded = Task::new(TaskKind::Position, None, Some(&[f64::INFINITY; 3]), None).unwrap();
+    let kept = |tip, task| {
+        let named = NamedTask { subject: Subject::Tip(tip), task, tolerance: Tolerance::default() };
+        Keep::new(&named, &Target::Position([0.0; 3]))
+    };
     promises! {
         "Limits::replace" WrongLength: none().replace(Field::Velocity, vec![Profile::Constant(1.0); 3]), "velocity limit: expected one number, or 2 (one per joint), got 3";
         "Limits::replace" OutOfRange: none().replace(Field::Velocity, vec![Profile::Constant(NAN)]), "velocity limit of joint '0' must be a number, got NaN";
@@ -32,6 +37,8 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Task::with_first" Contradiction: Task::from(TaskKind::Position).with_first(First::Position), "task Position has no order of position and orientation ('position' first): take task Pose";
         "Task::target" WrongTarget: weighed(TaskKind::Orientation, &[1.0; 3]).unwrap().target(&Target::Position([0.0; 3])), "task Orientation needs a target pose (4, 4), got a position (3,)";
         "Goal::validate_numbers" OutOfRange: Goal::Centring { weight: 0.0 }.validate_numbers(), "weight of a goal must be positive and finite, got 0";
+        "Keep::new" Contradiction: kept(0, Some(unbounded)), "nothing would be kept: all tolerances of the task are infinite, or all its weights zero";
+        "Keep::require_tips" Contradiction: kept(1, None).unwrap().require_tips(&two()), "something is to be kept for tip number 1, but the robot has 1";
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";
         "Algorithm::validate" OutOfRange: Algorithm::from(NewtonRaphson { step_fraction: 0.0 }).validate(), "step_fraction must be above 0 and at most 1, got 0";
         "DerivativeFree::validate" OutOfRange: DerivativeFree::from(Bas { c1: 0.0, ..Bas::default() }).validate(), "c1 must be positive and finite, got 0";

@@ -106,6 +106,7 @@ struct ClearPlanner<'p> {
 enum Fault {
     TooNear(Box<TooNear>),
     OutsideLimits,
+    Broken,
     OffPath,
 }
 
@@ -164,6 +165,11 @@ impl ClearPlanner<'_> {
                     self.passage.stay_inside();
                     None
                 }
+                Some(Fault::Broken) => {
+                    // Denser waypoints follow more closely what holds at each of them.
+                    self.accuracy *= 0.25;
+                    Some(Status::Stalled)
+                }
                 Some(Fault::OffPath) if round == CLOSER_ROUNDS => return self.finished(smooth, found, None),
                 Some(Fault::OffPath) => {
                     self.accuracy *= 0.5;
@@ -190,7 +196,8 @@ impl ClearPlanner<'_> {
     ) -> Result<(FollowedPath, Option<SearchResult>)> {
         let Self { problem, space, accuracy, .. } = self;
         let starts_as_given = problem.options.start.is_some();
-        let motion = NullSpaceOffsets::around(&problem.robot, problem.tip_path, waypoints, starts_as_given);
+        let motion =
+            NullSpaceOffsets::around(&problem.robot, problem.tip_path, problem.keeps, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
         cost.space = *space;
         let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
@@ -210,6 +217,9 @@ impl ClearPlanner<'_> {
         }
         if !self.problem.limits.violations(trajectory).is_empty() {
             return Some(Fault::OutsideLimits);
+        }
+        if !self.problem.is_kept(trajectory) {
+            return Some(Fault::Broken);
         }
         self.problem.leaves_path(motion).then_some(Fault::OffPath)
     }
@@ -271,12 +281,26 @@ impl ClearPlanner<'_> {
             return Ok(error);
         }
         let place = tip_path.point_in_words(self.fractions[layer]);
-        let problem = match self.postures[layer].len() {
-            0 => "none of the motions tried reached it".into(),
-            1 => "the one configuration tried there is on another branch than those before".into(),
-            count => format!("all {count} configurations tried there are on other branches than those before"),
+        let problem = match (self.postures[layer].len(), self.broken_at(layer)) {
+            (0, _) if !self.problem.keeps.keeps.is_empty() => {
+                "none of the motions tried reached it with what is to be kept".into()
+            }
+            (0, _) => "none of the motions tried reached it".into(),
+            (count, Some(broken)) => {
+                format!("what is to be kept holds at none of {count} configurations tried there: {broken}")
+            }
+            (1, None) => "the one configuration tried there is on another branch than those before".into(),
+            (count, None) => {
+                format!("all {count} configurations tried there are on other branches than those before")
+            }
         };
         Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}").into() })
+    }
+
+    /// The error that breaks what is to be kept at the first posture of a layer, if it is broken at all of them.
+    fn broken_at(&self, layer: usize) -> Option<String> {
+        let broken = |q: &Point| self.problem.keeps.broken_at(q);
+        self.postures[layer].iter().map(broken).collect::<Option<Vec<_>>>()?.into_iter().next()
     }
 
     /// Returns the plan of a motion; `blocked` is the status of a motion that is not certified.

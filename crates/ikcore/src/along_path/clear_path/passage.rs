@@ -41,7 +41,7 @@ pub(super) struct Passage<'a> {
 
 impl<'a> Passage<'a> {
     pub fn new(problem: &'a PathProblem<'a>, space: Option<&'a ClearSpace<'a>>) -> Self {
-        let projection = Projection::new(&problem.robot);
+        let projection = Projection::new(&problem.robot, problem.keeps);
         Self { problem, space, limits: projection.bounds.clone(), projection, extras: vec![] }
     }
 
@@ -99,9 +99,9 @@ impl<'a> Passage<'a> {
         near.map(|extra| extra.distance).fold(POSTURE_RESERVE, f64::max)
     }
 
-    /// Whether the posture `q` keeps clear there.
+    /// Whether the posture `q` keeps clear there, and everything else that is to be kept.
     pub fn is_clear(&self, fraction: f64, q: &[f64]) -> bool {
-        self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(fraction)))
+        self.problem.keeps.hold(q) && self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(fraction)))
     }
 
     /// Returns the posture on the path nearest to `guess`, if there is one inside the limits.

@@ -1,6 +1,6 @@
 //! Joint splines through waypoints on a path, dense enough that the tip stays on the path between them.
 
-use super::projection::{NEAR_ENOUGH, Projection, strays};
+use super::projection::{NEAR_ENOUGH, PathKeeps, Projection, strays};
 use crate::along_path::deviation::deviation_on;
 use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result};
@@ -61,6 +61,8 @@ pub(crate) struct Interpolation<'a> {
     pub robot: &'a Robot,
     /// The path.
     pub tip_path: &'a TipPath,
+    /// What holds at every instant.
+    pub keeps: PathKeeps<'a>,
     /// Behaviour at corners.
     pub corners: Corners,
 }
@@ -196,7 +198,7 @@ impl Interpolation<'_> {
     /// there, or `within` this distance (m, rad).
     fn halved(&self, waypoints: &JointWaypoints, intervals: &[usize], path: &JointPath, within: f64) -> JointWaypoints {
         let n = self.robot.dof();
-        let mut projection = Projection::new(self.robot);
+        let mut projection = Projection::new(self.robot, self.keeps);
         let mut finer = JointWaypoints { knots: vec![], rows: vec![] };
         let mut intervals = intervals.iter().peekable();
         for (i, knot) in waypoints.knots.iter().enumerate() {

@@ -32,6 +32,7 @@ pub(super) use interpolation::{Interpolation, JointWaypoints};
 pub(super) use null_space_offsets::NullSpaceOffsets;
 pub(super) use path_problem::FollowedPath;
 pub(crate) use path_problem::PathProblem;
+pub(crate) use projection::PathKeeps;
 pub(super) use projection::{NEAR_ENOUGH, Projection, strays};
 pub(super) use timed_cost::TimedCost;
 pub(crate) use timed_planner::along_path;

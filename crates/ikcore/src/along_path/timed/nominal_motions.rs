@@ -58,7 +58,7 @@ pub(super) struct NominalMotions<'a> {
 
 impl<'a> NominalMotions<'a> {
     pub fn new(problem: &'a PathProblem<'a>) -> Self {
-        Self { problem, projection: Projection::new(&problem.robot) }
+        Self { problem, projection: Projection::new(&problem.robot, problem.keeps) }
     }
 
     /// Returns the shortest motions that follow the path, each shortened within the tolerance band; the first also

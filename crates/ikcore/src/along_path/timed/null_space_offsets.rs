@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 
 use super::interpolation::JointWaypoints;
 use super::null_space::{null_space, turned};
-use super::projection::Projection;
+use super::projection::{PathKeeps, Projection};
 use crate::along_path::tip_path::{Borders, PathTarget, TipPath};
 use crate::math::MAX_DOF;
 use crate::math::cubic_spline::CubicSpline;
@@ -38,13 +38,14 @@ impl<'a> NullSpaceOffsets<'a> {
     pub(crate) fn around(
         robot: &'a Robot,
         tip_path: &'a TipPath,
+        keeps: PathKeeps<'a>,
         nominal: JointWaypoints,
         starts_as_given: bool,
     ) -> Self {
         let rows = nominal.rows.chunks_exact(robot.dof());
         let held = nominal.knots.iter().zip(rows).map(|(knot, q)| tip_path.path_target(*knot).held_at(|| robot.tip(q)));
         let mut motion = Self {
-            projection: Projection::new(robot),
+            projection: Projection::new(robot, keeps),
             held: held.collect(),
             weights: node_weights(&nominal.knots),
             nominal,

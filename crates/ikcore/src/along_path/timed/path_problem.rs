@@ -1,11 +1,13 @@
 //! A path, and the limits and accuracy of the motion along it.
 
 use super::interpolation::{Corners, Interpolation, JointWaypoints};
+use super::projection::PathKeeps;
 use crate::along_path::deviation::TipDeviation;
 use crate::along_path::tip_path::TipPath;
+use crate::constraint::{KeepSweep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::message::Setting;
-use crate::plan::AlongPathOptions;
+use crate::plan::{AlongPathOptions, TimedMotion};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
 use crate::timing::{ConstantLimits, JointPath, coarse_duration, time_all};
@@ -27,6 +29,8 @@ pub(crate) struct PathProblem<'a> {
     pub limits: ConstantLimits,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
     pub accuracy: f64,
+    /// What holds at every instant.
+    pub keeps: PathKeeps<'a>,
     /// The options of the call, with a start that the gate has taken.
     pub options: &'a AlongPathOptions,
     /// Stopwatch of the call.
@@ -47,8 +51,14 @@ pub(crate) struct FollowedPath {
 
 impl<'a> PathProblem<'a> {
     /// # Errors
-    /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path.
-    pub(crate) fn new(robot: &Robot, tip_path: &'a TipPath, options: &'a AlongPathOptions) -> Result<Self> {
+    /// Those of the limits; [`Error::OutOfRange`] for the accuracy; [`Error::Infeasible`] for a start that is not on the path;
+    /// [`Error::Contradiction`] for one at which something does not hold that is to be kept.
+    pub(crate) fn new(
+        robot: &Robot,
+        tip_path: &'a TipPath,
+        keeps: PathKeeps<'a>,
+        options: &'a AlongPathOptions,
+    ) -> Result<Self> {
         let stopwatch = Stopwatch::start();
         let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
         limits.require_accelerations(METHOD)?;
@@ -56,9 +66,10 @@ impl<'a> PathProblem<'a> {
         require_positive("accuracy", accuracy)?;
         if let Some(q) = &options.start {
             require_on_path(robot, q, tip_path, accuracy)?;
+            refuse_broken("start_q", keeps.keeps, keeps.robot, q)?;
         }
         let robot = limits.applied_to(robot)?;
-        Ok(Self { robot, tip_path, limits, accuracy, options, stopwatch })
+        Ok(Self { robot, tip_path, limits, accuracy, keeps, options, stopwatch })
     }
 
     /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
@@ -71,10 +82,10 @@ impl<'a> PathProblem<'a> {
         nominal: &JointWaypoints,
         accuracy: f64,
     ) -> Result<(Interpolation<'a>, JointWaypoints)> {
-        let Self { robot, tip_path, limits, .. } = self;
+        let Self { robot, tip_path, limits, keeps, .. } = self;
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
         for corners in Corners::on(tip_path) {
-            let interpolation = Interpolation { robot, tip_path, corners: *corners };
+            let interpolation = Interpolation { robot, tip_path, keeps: *keeps, corners: *corners };
             let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
             let path = interpolation.path(&waypoints)?;
             let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
@@ -82,8 +93,16 @@ impl<'a> PathProblem<'a> {
                 quickest = Some((duration, interpolation, waypoints));
             }
         }
-        let stopping = || (Interpolation { robot, tip_path, corners: Corners::Stopped }, nominal.clone());
+        let stopped = Interpolation { robot, tip_path, keeps: *keeps, corners: Corners::Stopped };
+        let stopping = || (stopped, nominal.clone());
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
+    }
+
+    /// Whether everything that is to be kept is certified to hold along a motion.
+    pub(crate) fn is_kept(&self, motion: &Trajectory) -> bool {
+        let PathKeeps { robot, keeps } = self.keeps;
+        let whole = [0.0, motion.duration()];
+        keeps.is_empty() || KeepSweep::new(robot, keeps).check(&TimedMotion::new(motion), whole).is_ok()
     }
 
     /// Returns the fastest motion through `waypoints`, with knots added as its accuracy requires.

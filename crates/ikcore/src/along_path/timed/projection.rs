@@ -1,6 +1,7 @@
 //! Projection of a configuration onto a target of the path.
 
 use crate::along_path::tip_path::{Borders, PathTarget};
+use crate::constraint::{Keep, KeepTasks};
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization};
 use crate::robot::Robot;
@@ -41,13 +42,34 @@ pub(crate) struct Projection<'a> {
     pub robot: &'a Robot,
     pub bounds: Bounds,
     linearization: Linearization,
+    keeps: PathKeeps<'a>,
+    kept: KeepTasks,
+}
+
+/// What holds at every instant of the motion, of the tip of a robot without the tool of its task.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PathKeeps<'a> {
+    pub robot: &'a Robot,
+    pub keeps: &'a [Keep],
+}
+
+impl PathKeeps<'_> {
+    /// The error that is beyond its tolerance at `q`, in words; `None` where everything holds.
+    pub(crate) fn broken_at(&self, q: &[f64]) -> Option<String> {
+        self.keeps.iter().find_map(|keep| keep.broken_at(self.robot, q))
+    }
+
+    /// Whether everything holds at `q`.
+    pub(crate) fn hold(&self, q: &[f64]) -> bool {
+        self.keeps.iter().all(|keep| keep.holds(self.robot, q))
+    }
 }
 
 impl<'a> Projection<'a> {
-    /// Projection within the limits of `robot`.
-    pub(crate) fn new(robot: &'a Robot) -> Self {
+    /// Projection within the limits of `robot`, to where everything that is to be kept holds too.
+    pub(crate) fn new(robot: &'a Robot, keeps: PathKeeps<'a>) -> Self {
         let bounds = Bounds::from_ranges(robot.joints().iter().map(|joint| (joint.lower, joint.upper)));
-        Self { robot, bounds, linearization: Linearization::default() }
+        Self { robot, bounds, linearization: Linearization::default(), keeps, kept: KeepTasks::new(keeps.keeps) }
     }
 
     /// Moves `q` onto the target, to a nearby solution. Returns the remaining error (m, rad); 0 if the target is met.
@@ -56,7 +78,7 @@ impl<'a> Projection<'a> {
         let mut borders = Borders::default();
         self.linearization.project(q, self.bounds.ends(), MOST_STEPS + 1, |q, at| {
             let before = value;
-            value = target.linearize(self.robot, q, &mut borders, at);
+            value = target.linearize(self.robot, q, &mut borders, at) + self.kept.append(self.keeps.robot, q, at);
             step += 1;
             let goes_on = step <= STEPS || step <= MOST_STEPS && value < CONVERGING * before;
             (!(value <= MET) && goes_on).then_some(DAMPING * value)
@@ -69,7 +91,7 @@ impl<'a> Projection<'a> {
     pub(crate) fn approach(&mut self, target: &PathTarget, q: &mut [f64], within: f64) -> bool {
         let mut borders = Borders::default();
         self.linearization.project(q, self.bounds.ends(), APPROACH_STEPS, |q, at| {
-            let value = target.linearize(self.robot, q, &mut borders, at);
+            let value = target.linearize(self.robot, q, &mut borders, at) + self.kept.append(self.keeps.robot, q, at);
             (!(value.sqrt() <= within)).then(|| APPROACH_DAMPING.max(DAMPING * value))
         })
     }

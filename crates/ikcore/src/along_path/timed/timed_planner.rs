@@ -61,7 +61,7 @@ impl<'p> Candidate<'p> {
         monitor: &mut dyn Monitor,
     ) -> Result<(Plan, Option<SearchResult>)> {
         let PathProblem { robot, tip_path, options, .. } = problem;
-        let motion = NullSpaceOffsets::around(robot, tip_path, self.waypoints, options.start.is_some());
+        let motion = NullSpaceOffsets::around(robot, tip_path, problem.keeps, self.waypoints, options.start.is_some());
         let mut cost = TimedCost::new(problem, motion, self.interpolation);
         let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
         let stop = Stop {

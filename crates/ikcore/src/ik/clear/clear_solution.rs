@@ -8,7 +8,6 @@ use crate::ik::solve_options::Prefer;
 use crate::objective::Point;
 use crate::obstacle::{Blocked, ClearSpace, Contact, Sensed};
 use crate::solver::Status;
-use crate::task::{Goal, Goals};
 
 /// Finds a solution in `space`, or the configuration nearest to one.
 ///
@@ -125,20 +124,17 @@ impl ClearSearch<'_, '_, '_> {
                 None => {}
             }
         }
-        let goal = Goal::Posture { posture: start.to_vec(), weight: 1.0 };
-        self.least_cost(&mut Goals::new(&[goal], context.robot(), context.bounds()), Some(start))
+        self.least_cost(&mut context.distance_from(start), Some(start))
     }
 
     /// Moves the clear solution `q` along its self-motion to the nearest optimum of the goals.
     fn improved(&mut self, mut q: Point, start: Option<&[f64]>) -> Point {
         let context = self.attempt.context;
-        if context.goals().is_empty() {
-            return q;
-        }
+        let Some(mut goals) = context.goals_from(start) else { return q };
         if let Some(start) = start {
             self.bring_near(start, &mut q);
         }
-        self.attempt.descend_goals(&mut context.goals().clone(), &mut q);
+        self.attempt.descend_goals(&mut goals, &mut q);
         q
     }
 }

@@ -44,6 +44,12 @@ const PRICE: f64 = 2.0;
 /// Least price of an error of the first part (1/m or m^2/rad).
 const LEAST_PRICE: f64 = 1.0;
 
+/// Step (rad, m) up to which the Lagrangian judges steps too.
+const NEAR: f64 = 0.1;
+
+/// Price of the squared error of the first part in the Lagrangian (1/m^2, 1/rad^2).
+const CURVED: f64 = 50.0;
+
 /// Descent towards one pose.
 pub(crate) struct RankedDescent<'a> {
     robot: &'a Robot,
@@ -95,15 +101,16 @@ impl<'a> RankedDescent<'a> {
     /// Descends from `q`, inside the box.
     pub fn descend(&mut self, q: &[f64]) -> RankedPoint {
         self.until = self.evaluations + LONG;
-        let (mut here, mut there) = (At::default(), At::default());
+        let (mut a, mut b) = (At::default(), At::default());
+        let (mut here, mut there) = (&mut a, &mut b);
         let mut q = Point::from_slice(q);
         self.bounds.clip(&mut q);
-        self.place(&q, &mut here);
+        self.place(&q, here);
         let mut trial = q.clone();
         for _ in 0..MOST_STEPS {
-            let multipliers = self.step(&here, &q, &mut trial);
+            let multipliers = self.step(here, &q, &mut trial);
             let length = largest_difference(&trial, &q);
-            if length == 0.0 || !self.lowered(&multipliers, &q, &mut trial, &here, &mut there) {
+            if length == 0.0 || !self.lowered(&multipliers, &q, &mut trial, here, there) {
                 break;
             }
             q.copy_from_slice(&trial);
@@ -112,11 +119,11 @@ impl<'a> RankedDescent<'a> {
                 break;
             }
         }
-        self.meet_first(&mut q, &mut here);
+        self.meet_first(&mut q, &mut here, &mut there);
         if here.first_error() > OUT_OF_REACH {
             self.approach_first(&mut q);
             self.turn_idle_joints(&mut q);
-            self.place(&q, &mut here);
+            self.place(&q, here);
         }
         RankedPoint { first: here.first_error(), second: here.model.value, q }
     }
@@ -131,38 +138,45 @@ impl<'a> RankedDescent<'a> {
     fn lowered(&mut self, multipliers: &[f64; 3], q: &[f64], trial: &mut Point, here: &At, there: &mut At) -> bool {
         let price = PRICE * multipliers.iter().map(|entry| entry * entry).sum::<f64>().sqrt() + LEAST_PRICE;
         let merit = |at: &At| at.model.value + price * at.first_error();
-        let before = merit(here);
-        let end = trial.clone();
+        let lagrangian = |at: &At| {
+            let balance: f64 = multipliers.iter().zip(&at.model.residual).map(|(price, entry)| price * entry).sum();
+            at.model.value + balance + CURVED * at.first_error().powi(2)
+        };
+        let (before, balanced) = (merit(here), lagrangian(here));
+        let mut end = None;
         let mut fraction = 1.0;
         for _ in 0..HALVINGS {
             self.place(trial, there);
             let after = merit(there);
-            // At an optimum, rounding may hide the gain of the last step.
-            if after < before || largest_difference(trial, q) < SHORT && after <= before + 1e-14 {
+            let length = largest_difference(trial, q);
+            // At an optimum, rounding may hide the gain of the last step; near it, a full step may gain less than the bend of the
+            // equations costs, which the Lagrangian leaves out.
+            let is_near = length < NEAR && lagrangian(there) < balanced;
+            if after < before || is_near || length < SHORT && after <= before + 1e-14 {
                 return true;
             }
             fraction *= 0.5;
-            write_within(q, &end, fraction, trial);
+            let end = end.get_or_insert_with(|| trial.clone());
+            write_within(q, end, fraction, trial);
         }
         false
     }
 
     /// Lowers the error of the first part alone, to rounding.
-    fn meet_first(&mut self, q: &mut Point, here: &mut At) {
+    fn meet_first<'b>(&mut self, q: &mut Point, here: &mut &'b mut At, next: &mut &'b mut At) {
         let [lower, upper] = self.bounds.ends();
-        let mut next = At::default();
         for _ in 0..LAST_STEPS {
             if here.first_error() <= MET {
                 return;
             }
             let mut trial = q.clone();
             RankedStep { columns: &here.columns, model: &here.model, x: q, lower, upper }.write_first(&mut trial);
-            self.place(&trial, &mut next);
+            self.place(&trial, next);
             if !(next.first_error() < here.first_error()) {
                 return;
             }
             q.copy_from_slice(&trial);
-            std::mem::swap(here, &mut next);
+            std::mem::swap(here, next);
         }
     }
 
@@ -200,16 +214,17 @@ impl<'a> RankedDescent<'a> {
 
     /// Minimises the value of the model that `place` writes, in `bounds`, without equations.
     fn minimise(&mut self, q: &mut Point, bounds: &Bounds, place: impl Fn(&mut Self, &[f64], &mut At)) {
-        let (mut here, mut there) = (At::default(), At::default());
+        let (mut a, mut b) = (At::default(), At::default());
+        let (mut here, mut there) = (&mut a, &mut b);
         let [lower, upper] = bounds.ends();
-        place(self, q, &mut here);
+        place(self, q, here);
         for _ in 0..MOST_STEPS {
             let mut trial = q.clone();
             RankedStep { columns: &here.columns, model: &here.model, x: q, lower, upper }.write(&mut trial);
             let (end, mut fraction) = (trial.clone(), 1.0);
             let is_lower = (0..HALVINGS).any(|_| {
                 write_within(q, &end, fraction, &mut trial);
-                place(self, &trial, &mut there);
+                place(self, &trial, there);
                 fraction *= 0.5;
                 there.model.value < here.model.value
             });

@@ -1,6 +1,7 @@
 //! Solution of a pose of which one part comes first: least error of the first part, then least error of the second among those.
 
 use super::ranked_descent::{MOST_EVALUATIONS, RankedDescent, RankedPoint};
+use super::seeds::RankedStart;
 use crate::ik::attempt::Attempt;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::whole_turns::bring_near;
@@ -74,16 +75,24 @@ fn best_of<'s>(
     attempt: &mut Attempt<'_, '_>,
     pose: &Frame,
     first: First,
-    seeds: impl Iterator<Item = &'s Point>,
+    seeds: impl Iterator<Item = &'s RankedStart>,
 ) -> Vec<RankedPoint> {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let mut descent = RankedDescent::new(robot, pose, first, bounds);
     let mut points: Vec<RankedPoint> = vec![];
-    for seed in seeds {
+    let mut least = f64::INFINITY;
+    for start in seeds {
         if attempt.budget.left() < descent.evaluations + MOST_EVALUATIONS {
             break;
         }
-        points.push(descent.descend(seed));
+        if start.least > least + SAME_SECOND {
+            continue;
+        }
+        let point = descent.descend(&start.q);
+        if point.is_met() && attempt.context.space().is_none() {
+            least = least.min(point.second);
+        }
+        points.push(point);
     }
     attempt.budget.evaluations += descent.evaluations;
     if let Some(space) = attempt.context.space() {

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::closed_form::SEEDS;
+use crate::closed_form::{SEEDS, Seed};
 use crate::ik::attempt::Attempt;
 use crate::math::Frame;
 use crate::objective::{Differentiable, Point};
@@ -16,19 +16,27 @@ const STARTS: usize = 16;
 /// Evaluation budget of the descent from such a start to the first part alone.
 const TO_FIRST: usize = 30;
 
+/// Start of a descent.
+pub(super) struct RankedStart {
+    pub q: Point,
+    /// Least value of the second part that the descent can be expected to reach.
+    pub least: f64,
+}
+
 impl Attempt<'_, '_> {
     /// Seeds for an arm with a closed form for positions; `None` for others.
-    pub(super) fn closed_form_seeds(&self, pose: &Frame, first: First) -> Option<SmallVec<[Point; SEEDS]>> {
+    pub(super) fn closed_form_seeds(&self, pose: &Frame, first: First) -> Option<SmallVec<[RankedStart; SEEDS]>> {
         let robot = self.context.robot();
         let mut seeds = SmallVec::new();
         if first != First::Position || !robot.position_seeds(pose, self.context.sampling_ranges(), &mut seeds) {
             return None;
         }
-        Some(seeds.iter().map(|seed| Point::from_slice(&seed.q[..robot.dof()])).collect())
+        let start = |seed: &Seed| RankedStart { q: Point::from_slice(&seed.q[..robot.dof()]), least: seed.least };
+        Some(seeds.iter().map(start).collect())
     }
 
     /// Seeds by descents to the first part alone, from `near` and from scattered starts.
-    pub(super) fn searched_seeds(&mut self, pose: &Frame, first: First, near: &[&[f64]]) -> Vec<Point> {
+    pub(super) fn searched_seeds(&mut self, pose: &Frame, first: First, near: &[&[f64]]) -> Vec<RankedStart> {
         let target = match first {
             First::Position => Target::Position(pose.origin),
             First::Orientation => Target::Orientation(*pose),
@@ -36,13 +44,14 @@ impl Attempt<'_, '_> {
         let task = CheckedTask::from(Tolerance { position: 1e-9, rotation: 1e-9 });
         let robot = self.context.robot();
         let bounds = self.context.bounds();
-        let mut seeds: Vec<Point> = near.iter().map(|q| Point::from_slice(q)).collect();
+        let of_point = |q: &[f64]| RankedStart { q: Point::from_slice(q), least: f64::NEG_INFINITY };
+        let mut seeds: Vec<RankedStart> = near.iter().map(|q| of_point(q)).collect();
         let mut start = self.first_start(None);
         for _ in 0..STARTS {
-            seeds.push(start.clone());
+            seeds.push(of_point(&start));
             self.next_start(&mut start);
         }
-        for seed in &mut seeds {
+        for RankedStart { q, .. } in &mut seeds {
             if self.budget.left() < TO_FIRST || !self.monitor.keep_going() {
                 break;
             }
@@ -50,9 +59,9 @@ impl Attempt<'_, '_> {
             let objective: &mut dyn Differentiable = &mut problem;
             let stop = Stop { max_evaluations: TO_FIRST, ..Stop::default() };
             let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
-            run(&LevenbergMarquardt::default(), &mut evaluator, seed);
+            run(&LevenbergMarquardt::default(), &mut evaluator, q);
             self.budget.add(&evaluator);
-            seed.copy_from_slice(&evaluator.best().x);
+            q.copy_from_slice(&evaluator.best().x);
         }
         seeds
     }

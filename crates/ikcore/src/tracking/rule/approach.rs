@@ -8,7 +8,7 @@
 use super::tick::Tick;
 use crate::math::Columns;
 use crate::math::Frame;
-use crate::math::box_step::{BoxStep, least_damping};
+use crate::math::box_step::least_damping;
 use crate::objective::{Point, TaskBlock};
 use crate::solver::LevenbergMarquardt;
 use crate::task::Target;
@@ -91,10 +91,8 @@ fn destination(target: &Target, q: &[f64], tip: &Frame, columns: &Columns, tick:
     let mut at = TaskBlock { columns: columns.clone(), ..TaskBlock::default() };
     let value = target.linearize_tip(tip, n, tick.criterion, &mut at).score.value;
     let positions = tick.context.positions();
-    let [lower, upper] = positions.ends();
     let lambda = least_damping(&at.columns[..n]).max(LevenbergMarquardt::default().initial_damping * value);
     let mut end = Point::from_slice(q);
-    let TaskBlock { columns, residual } = &at;
-    BoxStep { columns, residual, lambda, x: q, lower, upper }.write(&mut end);
+    at.write_step(lambda, q, &positions, &mut end);
     end
 }

@@ -198,12 +198,11 @@ impl GoalPursuit {
             let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(time, positions, tick));
             let least = self.linearization.least_damping(n);
             let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
-            let ends = positions.ends();
             match preferred {
                 Some(preferred) => {
-                    self.linearization.write_step_near(&preferred, lambda, &begin, ends, &mut self.sample);
+                    self.linearization.write_step_near(&preferred, lambda, &begin, positions, &mut self.sample);
                 }
-                None => self.linearization.write_step(lambda, &begin, ends, &mut self.sample),
+                None => self.linearization.write_step(lambda, &begin, positions, &mut self.sample),
             }
             if largest_difference(&self.sample, &begin) <= SHORT {
                 return;
@@ -252,6 +251,7 @@ impl GoalPursuit {
             let mut slope = preferred.clone();
             let StepContext { robot, dt, .. } = tick.context;
             tick.goals.cost(robot, None, &self.sample, &mut slope);
+            positions.steepest(&mut slope);
             preferred.iter_mut().zip(&slope).for_each(|(preferred, slope)| *preferred -= dt * slope);
         }
         positions.clip(&mut preferred);

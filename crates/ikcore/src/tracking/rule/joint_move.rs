@@ -66,7 +66,7 @@ impl JointMove {
                 break;
             }
             let lambda = self.linearization.least_damping(kept.len());
-            self.linearization.write_step(lambda, &kept, positions.ends(), &mut self.goal);
+            self.linearization.write_step(lambda, &kept, &positions, &mut self.goal);
             if largest_difference(&self.goal, &kept) > FARTHEST {
                 break;
             }

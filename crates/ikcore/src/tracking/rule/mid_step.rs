@@ -4,16 +4,14 @@
 //! from the last two ticks as (3 J_k - J_{k-1}) / 2, leaves one of third order, so that a single evaluation per tick reaches
 //! micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain null-space motion. If the box or a
 //! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error. A pose of
-//! which one part comes first is then met in that order.
+//! which one part comes first is then met in that order. Joints with weights approach a far target that stands still first: heavy
+//! ones would otherwise make what the others cannot do in one tick.
 
 use super::approach::Approach;
 use super::tick::{Tick, TickResult};
 use crate::ik::RankedDescent;
-use crate::math::Columns;
-use crate::math::{
-    Frame,
-    box_step::{BoxStep, least_damping},
-};
+use crate::math::box_step::least_damping;
+use crate::math::{Columns, Frame};
 use crate::objective::{Point, TaskBlock};
 use crate::robot::Robot;
 use crate::solver::Stop;
@@ -86,6 +84,10 @@ pub(super) fn advance(memory: &mut MidStepState, mut tick: Tick<'_>) -> TickResu
     }
     found.set_tip(&memory.begin.tip, tick.target, tick.criterion);
     let value_at_rest = found.value();
+    if tick.takes_its_time() && tick.ranked().is_none() && memory.follow_approach(value_at_rest, &mut found, &tick) {
+        memory.hand_on(true);
+        return found;
+    }
     let mut moved = memory.towards_goals(&mut found, &mut tick) || memory.gauss_newton(&mut found, &tick);
     if !found.is_solved() && memory.enter_band(&mut found, &mut tick) {
         moved = true;
@@ -180,15 +182,13 @@ impl MidStepState {
             Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
-        let TaskBlock { columns, residual } = &*self.linearization;
-        let [lower, upper] = tick.context.ends();
-        let lambda = least_damping(&columns[..n]);
-        let step = BoxStep { columns, residual, lambda, x: &found.q, lower, upper };
+        let (step, bounds) = (&self.linearization, tick.bounds());
+        let lambda = least_damping(&step.columns[..n]);
         let to = &mut self.trial.q;
         to.resize(n, 0.0);
         match preferred {
-            None => step.write(to),
-            Some(preferred) => step.write_near(preferred, to),
+            None => step.write_step(lambda, &found.q, bounds, to),
+            Some(preferred) => step.write_step_near(preferred, lambda, &found.q, bounds, to),
         }
         self.trial.update(tick.context.robot);
         found.evaluations += 1;

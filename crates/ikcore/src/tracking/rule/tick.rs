@@ -39,6 +39,11 @@ impl Tick<'_> {
         &self.context.tick_box.bounds
     }
 
+    /// Whether the joints that cost least have time to make the motion alone: they have weights, and the target stands still.
+    pub(super) fn takes_its_time(&self) -> bool {
+        self.bounds().weights().is_some() && self.targets.stand()
+    }
+
     /// Target pose, and the part of it that comes first where the whole cannot be met.
     pub(super) fn ranked(&self) -> Option<(Frame, First)> {
         let StepContext { robot, aims, .. } = self.context;
@@ -70,6 +75,7 @@ impl Tick<'_> {
         }
         let mut preferred = q.clone();
         self.goals.cost(self.context.robot, None, q, &mut preferred);
+        self.bounds().steepest(&mut preferred);
         preferred.iter_mut().zip(q).for_each(|(preferred, q)| *preferred = q - self.context.dt * *preferred);
         self.bounds().clip(&mut preferred);
         Some(preferred)
@@ -101,12 +107,14 @@ impl Tick<'_> {
         is_within
     }
 
-    /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt. The result is not assessed.
+    /// Lowers the error from `found` within `bounds` by Levenberg-Marquardt, whatever the weights of the joints. The result is not
+    /// assessed.
     pub(super) fn descend(&mut self, found: &mut TickResult, bounds: &Bounds, stop: Stop) {
         let StepContext { robot, aims, .. } = self.context;
         let mut problem = Problem::new(robot, aims);
         let objective: &mut dyn Differentiable = &mut problem;
-        let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);
+        let bounds = bounds.without_weights();
+        let mut evaluator = Evaluator::new(objective, &bounds, stop, self.rng, self.monitor);
         let status = run(&LevenbergMarquardt::default(), &mut evaluator, &found.q);
         found.evaluations += evaluator.evaluations();
         found.iterations += evaluator.iterations();

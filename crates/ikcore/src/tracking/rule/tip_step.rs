@@ -33,6 +33,9 @@ impl TipStep {
         begin.assessment = aims.linearize(robot, &begin.q, &mut self.begin, |_| ());
         begin.evaluations = 1;
         let mut found = begin.clone();
+        if tick.takes_its_time() && self.approach(&begin, &mut found, &tick) {
+            return found;
+        }
         let preferred = tick.preferred(&begin.q);
         if let Some(preferred) = &preferred {
             self.gauss_newton(&mut found, Some(preferred), &tick);
@@ -57,7 +60,7 @@ impl TipStep {
     /// configuration where the targets leave the joints free, may raise it.
     fn gauss_newton(&mut self, found: &mut TickResult, preferred: Option<&Point>, tick: &Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
-        let ends = tick.context.ends();
+        let bounds = tick.bounds();
         for i in 0..MOST_STEPS {
             // At least one step: an arm that waits until it is out of its band would move in jerks.
             if i > 0 && found.is_solved() {
@@ -67,8 +70,8 @@ impl TipStep {
             let (lambda, preferred) = (at.least_damping(found.q.len()), preferred.filter(|_| i == 0));
             let mut q = found.q.clone();
             match preferred {
-                Some(preferred) => at.write_step_near(preferred, lambda, &found.q, ends, &mut q),
-                None => at.write_step(lambda, &found.q, ends, &mut q),
+                Some(preferred) => at.write_step_near(preferred, lambda, &found.q, bounds, &mut q),
+                None => at.write_step(lambda, &found.q, bounds, &mut q),
             }
             let assessment = aims.linearize(robot, &q, &mut self.trial, |_| ());
             found.evaluations += 1;
@@ -90,13 +93,13 @@ impl TipStep {
         let least = self.begin.least_damping(n);
         let lambda = least.max(LevenbergMarquardt::default().initial_damping * begin.value());
         let mut end = begin.q.clone();
-        self.begin.write_step(lambda, &begin.q, positions.ends(), &mut end);
+        self.begin.write_step(lambda, &begin.q, &positions, &mut end);
         let fraction = tick.fraction_within(&begin.q, &end);
         if fraction >= 1.0 {
             return false;
         }
         let mut near = begin.clone();
-        let fraction = if tick.targets.moves() { 1.0 } else { fraction };
+        let fraction = if tick.targets.moves() && !tick.takes_its_time() { 1.0 } else { fraction };
         near.q.iter_mut().zip(&end).for_each(|(q, end)| *q += fraction * (end - *q));
         tick_box.bounds.clip(&mut near.q);
         near.assess(robot, &aims);

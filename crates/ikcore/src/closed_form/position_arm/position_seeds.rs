@@ -1,0 +1,317 @@
+//! Seeds for the nearest orientation at a position.
+
+use std::f64::consts::TAU;
+
+use smallvec::SmallVec;
+
+use super::goal::{PositionGoal, TurnRange};
+use super::of_position::PositionArm;
+use super::scan::{MOST, Minima, SEEDS, Scan, ScanMinimum, ScanSample, likeness};
+use super::solutions::ScanFrom;
+use crate::closed_form::angle::Angle;
+use crate::closed_form::angle_range::AngleRange;
+use crate::closed_form::branches::MOST_JOINTS;
+use crate::closed_form::structure::EXACT;
+use crate::math::Frame;
+use crate::math::arithmetic::Baseline;
+use crate::math::vector3::{Vector, norm, sub};
+
+/// Distance (rad) between two values of the scan.
+const SPACING: f64 = 0.15;
+
+/// Largest number of values of the scan.
+const VALUES: usize = 64;
+
+/// Turns of the fifth joint that the scan begins with, where the tip is far off its axis.
+const TURNS: usize = 4;
+
+/// Distance of the tip from the axis of the fifth joint, relative to the arm's size, up to which it is near.
+const NEAR_AXIS: f64 = 0.1;
+
+/// The same, relative to the distance of the goal from the first axis: beside that axis, little turns the arm far.
+const NEAR_FIRST: f64 = 0.25;
+
+/// Excess over the limits (rad) at which a solution for a tip near the axis counts: another turn of the fifth joint may bring a joint
+/// inside its limits.
+const NEAR_LIMITS: f64 = 0.2;
+
+/// Largest excess over the limits (rad) of a seed, which is moved inside.
+const SLACK: f64 = 0.5;
+
+/// Largest 1 - cos(angle) above the least of the scan at which a seed may lead to the least: exact solutions, and those of a tip off
+/// the last axis.
+const WORSE: [f64; 2] = [0.1, 0.3];
+
+/// Difference of the angles (rad) of two seeds that lead to the same optimum.
+const SAME: f64 = 0.02;
+
+/// What a descent may gain beyond a seed: the error of the parabola at its vertex, or the slope at the end of a column, times the first;
+/// at any end, and for a tip off the last axis, the second too.
+const RESERVE: f64 = 1.5;
+const LEAST_RESERVE: f64 = 0.02;
+
+/// Values of one joint (rad).
+type Values = SmallVec<[f64; VALUES]>;
+
+/// Configuration at or near the target position.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seed {
+    /// Values of the joints (rad); the first as many as the arm has are valid.
+    pub q: [f64; MOST_JOINTS],
+    /// 1 - cos of the angle to the target orientation.
+    pub value: f64,
+    /// Least such value that a descent from here can be expected to reach.
+    pub least: f64,
+}
+
+/// Place of the tip, seen from the axis of the fifth joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum TipPlace {
+    /// On the axis, or there is no such joint.
+    OnAxis,
+    /// Near this point of the axis.
+    Near(Vector),
+    Off,
+}
+
+impl PositionArm {
+    /// Writes seeds for the pose `target` of `tool`, in the frame of the flange, within the limits `lower` and `upper` (rad). The
+    /// best come first.
+    pub fn seeds(
+        &self,
+        target: &Frame,
+        tool: &Frame,
+        [lower, upper]: [&[f64]; 2],
+        found: &mut SmallVec<[Seed; SEEDS]>,
+    ) {
+        found.clear();
+        let tip = self.tip.then::<Baseline>(tool);
+        let limits = self.drives.of_axes(lower, upper);
+        let back = Frame { origin: [0.0; 3], ..tip }.inverse();
+        let turned = Frame { origin: [0.0; 3], ..*target }.then::<Baseline>(&back);
+        let place = self.tip_place(&tip.origin, &target.origin);
+        let slack = if let TipPlace::Near(_) = place { NEAR_LIMITS } else { 0.0 };
+        let goal = PositionGoal {
+            position: target.origin,
+            turned,
+            wanted: self.basis.map(|vector| turned.turn::<Baseline>(&vector)),
+            tip: tip.origin,
+            limits: &limits,
+            ranges: std::array::from_fn(|j| AngleRange::of([limits[j][0] - slack, limits[j][1] + slack])),
+            last: TurnRange::of(limits[MOST - 1]),
+        };
+        let values = self.scanned(&goal);
+        let mut minima = match place {
+            TipPlace::OnAxis => self.minima(&goal, &values, &[ScanFrom::OnAxis]),
+            TipPlace::Near(on_axis) => self.minima(&goal, &values, &[ScanFrom::Near(&goal.seen_from(on_axis))]),
+            TipPlace::Off => Minima::new(),
+        };
+        if minima.is_empty() && place != TipPlace::OnAxis {
+            let turns = spread(goal.limits[MOST - 1], 0.0, TURNS).into_iter();
+            let firsts: SmallVec<[ScanFrom<'_>; TURNS]> = turns.map(|turn| ScanFrom::Turn(Angle::by(turn))).collect();
+            minima = self.minima(&goal, &values, &firsts);
+        }
+        let least = minima.first().map_or(0.0, |minimum| minimum.sample.value);
+        let worse = WORSE[usize::from(place != TipPlace::OnAxis)];
+        let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
+        for minimum in minima.iter().take_while(|minimum| minimum.sample.value <= least + worse) {
+            let Some(seed) = self.seed(&goal, minimum, spacing, place) else { continue };
+            if !found.iter().any(|other| self.are_same(&seed, other)) {
+                found.push(seed);
+            }
+        }
+        found.sort_by(|a, b| a.value.total_cmp(&b.value));
+        for seed in found {
+            self.drives.joints_of(&mut seed.q);
+        }
+    }
+
+    /// Least values of the scan, the least of all first.
+    fn minima(&self, goal: &PositionGoal<'_>, values: &[f64], firsts: &[ScanFrom<'_>]) -> Minima {
+        let mut scan = Scan::new(firsts.len());
+        for value in values {
+            let fourth = self.fourth(*value);
+            for (number, first) in firsts.iter().enumerate() {
+                self.visit(goal, &fourth, first, |sample| scan.add(number, sample));
+            }
+            scan.end_row(*value);
+        }
+        scan.finish()
+    }
+
+    /// Values of the fourth joint (rad).
+    fn scanned(&self, goal: &PositionGoal<'_>) -> Values {
+        if self.count < 4 {
+            return SmallVec::from_elem(0.0, 1);
+        }
+        spread(goal.limits[3], SPACING, VALUES)
+    }
+
+    /// Where the tip is, seen from the axis of the fifth joint, for a goal at `position`.
+    fn tip_place(&self, tip: &Vector, position: &Vector) -> TipPlace {
+        if self.count < MOST {
+            return TipPlace::OnAxis;
+        }
+        let on_axis = self.joints[MOST - 1].nearest_to(tip);
+        let off = norm(&sub(tip, &on_axis));
+        let from_first = norm(&sub(position, &self.joints[0].nearest_to(position)));
+        if off <= EXACT * self.size {
+            TipPlace::OnAxis
+        } else if off <= NEAR_AXIS * self.size && off <= NEAR_FIRST * from_first {
+            TipPlace::Near(on_axis)
+        } else {
+            TipPlace::Off
+        }
+    }
+
+    /// Seed at a minimum of the scan, inside the limits; `None` too far outside them.
+    fn seed(&self, goal: &PositionGoal<'_>, minimum: &ScanMinimum, spacing: f64, place: TipPlace) -> Option<Seed> {
+        let (sample, least) = self.refined(goal, minimum, spacing, place);
+        let mut q = [0.0; MOST_JOINTS];
+        for j in 0..self.count {
+            let (inside, excess) = placed(sample.turns[j].angle(), goal.limits[j]);
+            if excess > SLACK {
+                return None;
+            }
+            q[j] = inside;
+        }
+        Some(Seed { q, value: sample.value, least })
+    }
+
+    /// Solution near the vertex at a minimum of the scan, and the least value that is expected nearby.
+    fn refined(
+        &self,
+        goal: &PositionGoal<'_>,
+        minimum: &ScanMinimum,
+        spacing: f64,
+        place: TipPlace,
+    ) -> (ScanSample, f64) {
+        let ScanMinimum { sample, beside, is_at_end, fourth } = minimum;
+        let vertex = minimum.vertex(spacing);
+        let nearby = self.solution_near(goal, sample, vertex.map_or(*fourth, |[fourth, _]| fourth), place);
+        let best = match nearby {
+            Some(nearby) if place != TipPlace::OnAxis || nearby.value <= sample.value => nearby,
+            _ => *sample,
+        };
+        let reserve = match (vertex, nearby, place) {
+            (Some([_, least]), Some(nearby), TipPlace::OnAxis) => RESERVE * (nearby.value - least).abs(),
+            (Some([_, least]), Some(nearby), _) => RESERVE * (nearby.value - least).abs() + LEAST_RESERVE,
+            _ if *is_at_end => LEAST_RESERVE,
+            _ => RESERVE * (beside[0].min(beside[1]) - sample.value) + LEAST_RESERVE,
+        };
+        (best, best.value - reserve)
+    }
+
+    /// Solution at this value of the fourth joint that is most like `sample`.
+    fn solution_near(
+        &self,
+        goal: &PositionGoal<'_>,
+        sample: &ScanSample,
+        fourth: f64,
+        place: TipPlace,
+    ) -> Option<ScanSample> {
+        let mut found: Option<(f64, ScanSample)> = None;
+        let keep = |other: ScanSample| {
+            let near = likeness(&other, sample);
+            if found.is_none_or(|(nearest, _)| near > nearest) {
+                found = Some((near, other));
+            }
+        };
+        let first = match place {
+            TipPlace::OnAxis => ScanFrom::OnAxis,
+            _ => ScanFrom::Turn(sample.turns[MOST - 1]),
+        };
+        self.visit(goal, &self.fourth(fourth), &first, keep);
+        found.map(|(_, sample)| sample)
+    }
+
+    /// Whether two seeds lead to the same optimum.
+    fn are_same(&self, a: &Seed, b: &Seed) -> bool {
+        (0..self.count).all(|j| (a.q[j] - b.q[j]).abs() < SAME)
+    }
+}
+
+/// Returns values between these limits, or over a turn, no farther apart than `spacing`, at most `most`; `most` of them if
+/// `spacing` is zero.
+fn spread([lower, upper]: [f64; 2], spacing: f64, most: usize) -> Values {
+    let (begin, width) = if upper - lower < TAU { (lower, upper - lower) } else { (-0.5 * TAU, TAU) };
+    let count = if spacing > 0.0 { ((width / spacing).ceil() as usize + 1).min(most) } else { most };
+    if count == 1 || width == 0.0 {
+        return SmallVec::from_elem(begin + 0.5 * width, 1);
+    }
+    (0..count).map(|k| begin + width * k as f64 / (count - 1) as f64).collect()
+}
+
+/// Returns the value of `angle` at a whole turn inside the limits, or at the nearer limit, and its excess over it (rad).
+fn placed(angle: f64, [lower, upper]: [f64; 2]) -> (f64, f64) {
+    if !lower.is_finite() || !upper.is_finite() {
+        return (angle.clamp(lower, upper), 0.0);
+    }
+    let above = angle + TAU * ((lower - angle) / TAU).ceil();
+    if above <= upper {
+        return (above, 0.0);
+    }
+    let (over, under) = (above - upper, lower - (above - TAU));
+    if over <= under { (upper, over) } else { (lower, under) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::axis_chain::JointAxis;
+    use crate::closed_form::configurations::Drives;
+    use crate::closed_form::position::ThreeAxes;
+    use crate::closed_form::structure::Pair;
+    use crate::math::vector3::across;
+    use crate::rng;
+
+    /// Arm of these axes with plain drives.
+    fn arm(joints: &[([f64; 3], [f64; 3])], tip: [f64; 3]) -> PositionArm {
+        let turning = |k: usize| {
+            joints.get(k).map_or(JointAxis::sliding([0.0, 0.0, 1.0]), |(axis, point)| JointAxis::turning(*axis, *point))
+        };
+        let all: [JointAxis; MOST] = std::array::from_fn(turning);
+        let size = 0.5;
+        let pair = |k: usize| Pair::of(&all[k], &all[k + 1], size, EXACT);
+        let three = ThreeAxes::new(&[all[0], all[1], all[2]], pair(0), pair(1), size);
+        let drives = Drives::new((0..joints.len()).map(|joint| (joint, 1.0)));
+        let tip = Frame { origin: tip, ..Frame::IDENTITY };
+        let basis = across(&all[joints.len() - 1].axis);
+        PositionArm { joints: all, count: joints.len(), tip, three, drives, size, basis }
+    }
+
+    #[test]
+    fn seeds_are_at_the_place_and_near_the_turn_of_a_pose_of_the_arm() {
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        let five = [
+            (z, [0.0; 3]),
+            (y, [0.03, 0.0, 0.1]),
+            (y, [0.06, 0.0, 0.22]),
+            (y, [0.19, 0.0, 0.22]),
+            (x, [0.25, 0.0, 0.22]),
+        ];
+        let mut rng = rng::stream(3, 0);
+        for count in 3..=5 {
+            let arm = arm(&five[..count], [0.35, 0.0, 0.22]);
+            assert!(arm.finds_samples());
+            let limits = [[-2.0; 5], [2.0; 5]];
+            for _ in 0..200 {
+                let q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-1.9, 1.9));
+                let motion =
+                    (0..count).fold(Frame::IDENTITY, |at, j| at.then::<Baseline>(&arm.joints[j].displacement(q[j])));
+                let target = motion.then::<Baseline>(&arm.tip);
+                let mut seeds = SmallVec::new();
+                arm.seeds(&target, &Frame::IDENTITY, [&limits[0][..count], &limits[1][..count]], &mut seeds);
+                let is_near = |seed: &Seed| {
+                    let joints = arm.joints.iter().zip(&seed.q).take(count);
+                    let moved =
+                        joints.fold(Frame::IDENTITY, |at, (joint, q)| at.then::<Baseline>(&joint.displacement(*q)));
+                    let tip = moved.then::<Baseline>(&arm.tip);
+                    let away = norm(&sub(&tip.origin, &target.origin));
+                    away < 1e-6 && norm(&crate::math::so3::rotation_between(&target, &tip)) < 0.4
+                };
+                assert!(seeds.iter().any(is_near), "{count} joints at {q:?}: {seeds:?}");
+            }
+        }
+    }
+}
