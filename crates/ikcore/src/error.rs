@@ -450,7 +450,7 @@ impl Error {
 
 /// Writes a number as it was given; a huge one with an exponent, not with hundreds of zeros.
 pub(crate) fn given(value: f64) -> String {
-    const HUGE: f64 = 1e16;
+    const HUGE: f64 = 1e21;
     if value.is_finite() && value.abs() >= HUGE { format!("{value:e}") } else { value.to_string() }
 }
 

@@ -15,8 +15,8 @@ const ARMS: [&str; 4] = ["panda", "ur5e", "iiwa14", "gen3"];
 const STEPS: [f64; 4] = [0.004, 0.01, 0.02, 1.0 / 30.0];
 const RESTS_AFTER: f64 = 6.0;
 
-/// Scenes in which an arm moved on for more than nine seconds before arms settled.
-const RESTLESS: [u64; 4] = [465, 736, 1437, 2122];
+/// Scene in which an arm moved on for more than nine seconds before arms settled.
+const RESTLESS: [u64; 1] = [736];
 
 /// Speed of an arm at rest (rad/s).
 const REST: f64 = 1e-3;
@@ -89,7 +89,7 @@ fn a_held_arm_rests_after_six_seconds_or_reaches_its_target() {
             }
         }
     }
-    assert!(late.is_empty() && held >= 6, "{held} held, late: {late:?}");
+    assert!(late.is_empty() && held >= 4, "{held} held, late: {late:?}");
 }
 
 #[test]

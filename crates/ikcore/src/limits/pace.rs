@@ -61,24 +61,12 @@ impl Limits {
         Err(Error::out_of_range(what, requirement, 0.0))
     }
 
-    /// Names the joints that cannot move because of a limit of zero or of equal position limits, with the remedy.
+    /// Names the joints that cannot move because of a limit of zero, with the remedy.
     pub(crate) fn lock(&self) -> Option<Message> {
-        let Some(Locked { field, joints, own }) = self.locked() else { return self.position_lock() };
+        let Locked { field, joints, own } = self.locked()?;
         let source = if own { " in the robot's description" } else { "" };
         let problem = format!("{} cannot move, since the {field} limit{source} is 0: give ", named_joints(&joints));
         Some(message![problem, Setting::Limit(field.name())])
-    }
-
-    /// Names the joints whose position limits are equal, as some CAD programs export them.
-    fn position_lock(&self) -> Option<Message> {
-        let [lower, upper] = [Field::Lower, Field::Upper].map(|field| self.field(field));
-        let (lower, upper) = (lower?, upper?);
-        let is_equal =
-            |j: &usize| matches!((&lower[*j], &upper[*j]), (Profile::Constant(a), Profile::Constant(b)) if a == b);
-        let joints: Vec<&str> = (0..self.dof()).filter(is_equal).map(|j| self.joint_name(j)).collect();
-        let problem =
-            || format!("{} cannot move, since its lower and upper limit are equal: give ", named_joints(&joints));
-        (!joints.is_empty()).then(|| message![problem(), Setting::Limit("lower"), " and ", Setting::Limit("upper")])
     }
 
     /// The joints that limits of zero lock, of the first such field.
@@ -152,13 +140,5 @@ mod tests {
             lock,
             "joint 'joint_1' cannot move, since the velocity limit in the robot's description is 0: give a velocity limit"
         );
-        let cad = Robot::planar(&[1.0, 1.0]).unwrap().with_limits(|j, joint| {
-            if j == 1 {
-                (joint.lower, joint.upper) = (0.0, 0.0);
-            }
-        });
-        let lock = Limits::of(&cad.unwrap()).lock().unwrap();
-        let says = "joint 'joint_2' cannot move, since its lower and upper limit are equal: give a lower limit and an upper limit";
-        assert_eq!(lock, says);
     }
 }
