@@ -3405,6 +3405,8 @@ def plan_point_to_point(
         free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
             bodies come nearer than at the start; see `Plan.freed`.
         task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
+        keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+            not sampled; `Plan.kept` has the largest errors.
         limits: position, velocity, acceleration and jerk limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
@@ -3421,7 +3423,7 @@ def plan_point_to_point(
 
     Raises:
         InvalidInputError: wrong shape, NaN, or an end that cannot be reached (names the end and the distance); of several ends
-            only if none can be reached.
+            only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
         LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
             joint and the remedy).
         InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
@@ -3648,7 +3650,7 @@ def plan_batch(
             others. The arguments of a problem override the common ones.
         threads: number of threads; None: one per core. With 1, everything runs in the calling thread.
         progress: True shows a progress bar; a callable is called with (done, total).
-        approach, retreat, free_start, task, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
+        approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, self_collision, stop, seed: as for
             `plan_point_to_point`, for all problems.
 
     Returns:
