@@ -363,3 +363,16 @@ def test_every_command_has_help(command: str) -> None:
 def test_messages_name_options_instead_of_keywords(command: str, message: str) -> None:
     refused = CliRunner().invoke(app, command.split())
     assert (refused.exit_code, refused.stderr.strip()) == (2, f"Error: {message}")
+
+
+def test_joint_weights_are_options_of_solve_and_track() -> None:
+    start = "0,-0.4,0,-2,0,1.6,0.8"
+    asked = ("solve", "panda", "--position", "0.4,0.1,0.5", "--start", start)
+    plain, weighted = (np.array(run_json(*asked, *more)["q"]) for more in ((), ("--joint-weights", "100,1,1,1,1,1,1")))
+    assert abs(weighted[0]) < 0.1 * abs(plain[0])
+    without_start = refused("solve", "panda", "--position", "0.4,0.1,0.5", "--joint-weights", "2,1,1,1,1,1,1")
+    assert "--joint-weights need a start to measure motions from" in without_start
+    assert "--joint-weights choose one solution: leave out --all" in refused(
+        *asked, "--all", "--joint-weights", "2,1,1,1,1,1,1"
+    )
+    assert "joint-weights" in run("track", "--help").stdout
