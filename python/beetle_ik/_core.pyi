@@ -3430,6 +3430,7 @@ def upright(
         >>> arm = bik.Robot.named("panda")
         >>> keep = bik.upright(arm, tilt=np.radians(15))
     """
+
 def plan_point_to_point(
     robot: Robot,
     start: _Pose | None = None,

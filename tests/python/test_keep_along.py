@@ -45,7 +45,8 @@ def test_the_tip_still_follows_its_path_among_obstacles() -> None:
     keep = bik.upright(arm, tilt=0.2)
     plan = bik.plan_along_path(arm, CIRCLE, task=ANYWHERE, keep=keep, limits=LIMITS, obstacles=[ball])
     assert plan.success, plan.message
-    assert tilts(plan).max() <= 0.2 and plan.clearance >= 0.001
+    assert tilts(plan).max() <= 0.2
+    assert plan.clearance >= 0.001
     distance = np.linalg.norm(sampled(plan)[:, :3, 3] - [0.45, 0.0, 0.35], axis=1)
     assert np.abs(distance - 0.15).max() < 1e-3
 
