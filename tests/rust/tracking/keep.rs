@@ -62,7 +62,7 @@ fn session(robot: &Robot, start: &[f64], dt: f64, limits: Limits, keeps: Vec<Kee
 fn live(robot: &Robot, session: &mut Session, judges: &[Judge], rng: &mut LazyRng, ticks: usize) -> [usize; 2] {
     let mut curve = ExecutedCurve::of(session);
     let home = robot.fk(session.q()).unwrap();
-    let (mut target, mut counts, mut stops) = (home, [0; 2], 0);
+    let (mut target, mut counts, mut stops) = (home, [0; 2], 0_usize);
     for tick in 0..ticks {
         if tick % 40 == 0 {
             let size = [0.0, 0.02, 0.1, 0.4][rng.below(4)];

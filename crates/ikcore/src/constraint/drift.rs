@@ -10,7 +10,7 @@ use crate::task::Target;
 
 /// Rates of a subject as its target sees it, per unit of a joint.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Drift {
+pub(super) struct SeenRates {
     /// Of the position, in the frame that the subject is seen from.
     pub origin: [f64; 3],
     /// Of the position along the axes of the target, or of the base if it has none.
@@ -23,7 +23,7 @@ pub(super) struct Drift {
     pub tilt: f64,
 }
 
-impl Drift {
+impl SeenRates {
     /// The rates of the subject at `frame`, for `column` of its geometric Jacobian.
     pub fn of(target: &Target, frame: &Frame, column: &[f64; 6]) -> Self {
         let [x, y, z, u, v, w] = *column;

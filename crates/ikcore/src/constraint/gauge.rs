@@ -7,7 +7,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::drift::Drift;
+use super::drift::SeenRates;
 use super::tip_bend::TipBend;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
@@ -193,7 +193,7 @@ impl Gauge {
     }
 
     /// The derivative of the value, by a joint that moves the subject like this.
-    pub fn slope(&self, seen: &Seen, drift: &Drift) -> f64 {
+    pub fn slope(&self, seen: &Seen, drift: &SeenRates) -> f64 {
         let along = |vector: &[f64; 3], rate: &[f64; 3]| match norm(vector) {
             0.0 => 0.0,
             length => dot(vector, rate) / length,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
-use super::drift::Drift;
+use super::drift::SeenRates;
 use super::gauge::{Gauge, Seen};
 use crate::error::{Error, Result};
 use crate::math::arithmetic::NoFma;
@@ -166,8 +166,8 @@ impl Keep {
     pub(crate) fn each_row(&self, robot: &Robot, q: &[f64], columns: &mut Columns, mut take: impl FnMut(KeepRow)) {
         let frame = self.task.frame_and_jacobian(robot, q, columns);
         let seen = self.seen(&frame);
-        let mut drifts: SmallVec<[Drift; STACK_DOF]> = SmallVec::new();
-        drifts.extend(columns[..q.len()].iter().map(|column| Drift::of(&self.target, &frame, column)));
+        let mut drifts: SmallVec<[SeenRates; STACK_DOF]> = SmallVec::new();
+        drifts.extend(columns[..q.len()].iter().map(|column| SeenRates::of(&self.target, &frame, column)));
         for gauge in &self.gauges {
             let mut slope = [0.0; MAX_DOF];
             slope.iter_mut().zip(&drifts).for_each(|(slope, drift)| *slope = gauge.slope(&seen, drift));

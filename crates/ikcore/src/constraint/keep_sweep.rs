@@ -382,7 +382,10 @@ mod tests {
                     for i in 0..=50 {
                         let q: Vec<f64> = point_between(&from, &to, f64::from(i) / 50.0).collect();
                         for (error, most) in keeps[0].errors(robot, &q).iter().zip(&largest[0]) {
-                            assert!(error.is_nan() == most.is_nan() && !(error > most), "{error} of at most {most}");
+                            assert!(
+                                error.is_nan() == most.is_nan() && !(*error > most + 1e-12),
+                                "{error} of at most {most}"
+                            );
                         }
                     }
                 }

@@ -2,7 +2,7 @@
 //! certified timing of that path.
 
 use super::end_pair::EndPair;
-use super::line_check::Kept;
+use super::line_check::PathConstraints;
 use super::pair_search::PairSearch;
 use super::path_search::{Certified, PathSearch};
 use super::rrt_connect::TreeSearch;
@@ -73,7 +73,7 @@ pub(super) fn plan(
     let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =
         TreeSearch::new(scene, ranges, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
-    trees.check.kept = Kept::of(robot, &options.keeps, &trees.ranges);
+    trees.check.kept = PathConstraints::of(robot, &options.keeps, &trees.ranges);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
         true if search.deadline.is_over() => Certified::Nothing(Status::BudgetSpent),

@@ -1,6 +1,6 @@
 //! Certified timings of a path: they keep its margin and its constraints at every instant.
 
-use super::line_check::{Kept, LineCheck};
+use super::line_check::{LineCheck, PathConstraints};
 use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::ClearanceSweep;
@@ -28,7 +28,7 @@ pub(super) struct Timing<'s, 'a> {
     pub limits: &'s ConstantLimits,
     pub sweep: &'s mut ClearanceSweep<'a>,
     /// Constraints to keep, if there are any.
-    pub kept: Option<&'s mut Kept<'a>>,
+    pub kept: Option<&'s mut PathConstraints<'a>>,
     /// Distance to keep (m).
     pub margin: f64,
     pub deadline: Deadline,

@@ -12,18 +12,18 @@ const INTERVALS: usize = 64;
 pub(super) struct LineCheck<'a> {
     pub clear: SampledLine<'a>,
     /// The constraints, if there are any.
-    pub kept: Option<Kept<'a>>,
+    pub kept: Option<PathConstraints<'a>>,
 }
 
 /// Constraints of a path.
-pub(super) struct Kept<'a> {
+pub(super) struct PathConstraints<'a> {
     pub sweep: KeepSweep<'a>,
     pub onto: Onto<'a>,
     /// Whether they leave straight lines no room.
     pub is_narrow: bool,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> PathConstraints<'a> {
     /// The constraints of a path of `robot` with its joints in these ranges; `None` without any.
     pub fn of(robot: &'a Robot, keeps: &'a [Keep], ranges: &[(f64, f64)]) -> Option<Self> {
         let (lower, upper): (Vec<f64>, Vec<f64>) = ranges.iter().copied().unzip();
@@ -50,7 +50,7 @@ impl<'a> LineCheck<'a> {
     }
 
     fn is_kept(&mut self, from: &[f64], to: &[f64]) -> bool {
-        let Some(Kept { sweep, .. }) = &mut self.kept else { return true };
+        let Some(PathConstraints { sweep, .. }) = &mut self.kept else { return true };
         sweep.check_within(&Edge { from, to }, [0.0, 1.0], INTERVALS).is_ok()
     }
 

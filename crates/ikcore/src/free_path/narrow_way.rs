@@ -3,7 +3,7 @@
 //! A line is then the way that it becomes when its points are moved to where the constraints hold, by halves. Along a whole path this
 //! gives waypoints, dense enough that a spline through them stays within the tolerances between them too, which is certified.
 
-use super::line_check::{Kept, LineCheck};
+use super::line_check::{LineCheck, PathConstraints};
 use crate::error::Result;
 use crate::math::cubic_spline::SplineEnds;
 use crate::math::vector::{distance, point_between};
@@ -39,7 +39,7 @@ impl LineCheck<'_> {
     }
 }
 
-impl Kept<'_> {
+impl PathConstraints<'_> {
     /// The fastest motion along the path of `motion`, moved to where narrow constraints hold; `None` if none was certified.
     ///
     /// # Errors

@@ -20,15 +20,16 @@ struct Effort {
     paths: usize,
     /// ... as long as those after the first one cost no more configurations.
     more: usize,
+    /// Number of changes tried on each.
+    changes: usize,
 }
 
 /// Effort between two given configurations.
-const QUICK: Effort = Effort { paths: 2, more: 2000 };
+const QUICK: Effort = Effort { paths: 2, more: 2000, changes: 60 };
 /// Effort where the ends leave a choice: finding them takes longer anyway.
-const THOROUGH: Effort = Effort { paths: 4, more: 20_000 };
-/// Number of shortcuts tried on each path, and of other changes on the first paths.
+const THOROUGH: Effort = Effort { paths: 4, more: 40_000, changes: 200 };
+/// Number of shortcuts tried on each path.
 const SHORTCUTS: usize = 20;
-const CHANGES: usize = 60;
 /// Maximum number of searches, each with more distance, where no path could be certified.
 const ROUNDS: u32 = 4;
 
@@ -140,7 +141,7 @@ impl<'a> PathSearch<'_, 'a> {
         stream: &mut u64,
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<(f64, TimedPath)>, Ended)> {
-        let Effort { paths: count, more } = if self.ends_are_free { THOROUGH } else { QUICK };
+        let Effort { paths: count, more, changes } = if self.ends_are_free { THOROUGH } else { QUICK };
         let whole = self.trees.budget;
         let mut candidates = vec![];
         let mut ended = Ended::Done;
@@ -154,7 +155,7 @@ impl<'a> PathSearch<'_, 'a> {
                     }
                     let measure = self.measure();
                     for mut path in paths {
-                        self.trees.refine(&mut path, (&measure, CHANGES), &mut rng, monitor);
+                        self.trees.refine(&mut path, (&measure, changes), &mut rng, monitor);
                         candidates.push(self.timed(path)?);
                     }
                 }

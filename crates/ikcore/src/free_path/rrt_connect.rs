@@ -39,7 +39,7 @@ const WITHIN: f64 = 0.5;
 const LEAST_GAIN: f64 = 0.1;
 
 /// Budget of node comparisons per configuration of the budget: about as much work again.
-const COMPARISONS: f64 = 100.0;
+const COMPARISONS: usize = 100;
 /// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
 /// Cost of a sample that no constraint admits, in comparisons.
@@ -47,10 +47,6 @@ const PROJECTION: usize = 300;
 
 /// Number of draws after which a sample is taken even if it is not promising.
 const DRAWS: usize = 1000;
-
-/// Fractions of the budget after which both trees are planted anew: a way that one pair of large trees misses is often found soon
-/// by another.
-const RESTARTS: [f64; 4] = [0.05, 0.15, 0.4, 1.0];
 
 /// A search for a path: its ends and its number.
 pub(super) struct Route<'r> {
@@ -115,38 +111,20 @@ impl<'a> TreeSearch<'a> {
         ranges
     }
 
-    /// Whether a budget is spent.
+    /// Whether a budget is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on them.
     pub(super) fn is_spent(&self) -> bool {
-        self.spent() >= 1.0 || self.deadline.is_over()
-    }
-
-    /// Fraction of the budget that is spent. Comparisons of nodes have their own: large trees that cannot grow spend their time on
-    /// them.
-    fn spent(&self) -> f64 {
-        let budget = self.budget.max(1) as f64;
-        (self.check.examined() as f64 / budget).max(self.compared as f64 / (COMPARISONS * budget))
+        let comparisons = self.budget.saturating_mul(COMPARISONS);
+        self.check.examined() >= self.budget || self.compared >= comparisons || self.deadline.is_over()
     }
 
     /// Searches for a path between clear ends.
     pub(super) fn connect(&mut self, route: &Route, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
-        let before = self.spent();
-        for fraction in RESTARTS {
-            match self.grow(route, before + fraction * (1.0 - before), rng, monitor) {
-                Connection::NotFound => {}
-                other => return other,
-            }
-        }
-        Connection::NotFound
-    }
-
-    /// Grows two trees until they meet, or until `most` of the budget is spent.
-    fn grow(&mut self, route: &Route, most: f64, rng: &mut LazyRng, monitor: &mut dyn Monitor) -> Connection {
         let n = route.start.len();
         let mut growing = ConfigurationTree::rooted(n, [route.start]);
         let mut other = ConfigurationTree::rooted(n, route.ends.iter().map(Vec::as_slice));
         let mut from_start = true;
         let mut next = vec![0.0; n];
-        while self.spent() < most && !self.is_spent() {
+        while !self.is_spent() {
             if !monitor.keep_going() {
                 return Connection::Interrupted;
             }
