@@ -3388,7 +3388,8 @@ class Keep:
 
     For example, a hand that stays within 1 cm of the plane z = 0.3 m:
 
-        >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[np.inf, np.inf, 0.01]))
+        >>> free = float("inf")
+        >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[free, free, 0.01]))
     """
 
     def __new__(cls, target: _Targets, task: Task | None = None) -> Keep: ...
@@ -3428,7 +3429,7 @@ def upright(
     For example:
 
         >>> arm = bik.Robot.named("panda")
-        >>> keep = bik.upright(arm, tilt=np.radians(15))
+        >>> keep = bik.upright(arm, tilt=0.25)
     """
 
 def plan_point_to_point(

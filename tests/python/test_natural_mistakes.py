@@ -19,8 +19,8 @@ READY = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
 TARGET = PANDA.fk(READY)
 BUILT_IN = ", ".join(bik.Robot.names())
 OF_SOLVE = (
-    "robot, target, task, start, solver, position_tolerance, rotation_tolerance, goals, prefer, limits, obstacles, "
-    "margin, self_collision, stop, seed"
+    "robot, target, task, start, solver, position_tolerance, rotation_tolerance, goals, prefer, joint_weights, limits, "
+    "obstacles, margin, self_collision, stop, seed"
 )
 SOLVERS = (
     "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, APPS, BroydenBAS, "

@@ -378,7 +378,7 @@ def assert_same(one: object, other: object) -> None:
         assert one.keys() == other.keys()
         for name in one:
             assert_same(one[name], other[name])
-    elif isinstance(one, tuple):
+    elif isinstance(one, tuple | list):
         assert len(one) == len(other)  # type: ignore[arg-type]
         for mine, theirs in zip(one, other, strict=True):  # type: ignore[call-overload]
             assert_same(mine, theirs)

@@ -82,7 +82,7 @@ def with_problem(**problem: Any) -> list[dict[str, Any]]:
 
 
 OPTIONS = (
-    "start_slack, end_turns, approach, retreat, free_start, task, limits, method, objective, obstacles, margin, "
+    "start_slack, end_turns, approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, "
     "self_collision, stop, seed"
 )
 NAMES = f"start, end, start_q, end_q, start_qd, {OPTIONS}"

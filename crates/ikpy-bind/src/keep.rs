@@ -37,7 +37,8 @@ use crate::wording::spelt;
 ///
 /// For example, a hand that stays within 1 cm of the plane z = 0.3 m:
 ///
-///     >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[np.inf, np.inf, 0.01]))
+///     >>> free = float("inf")
+///     >>> plane = bik.Keep([0, 0, 0.3], bik.tasks.Position(tolerance=[free, free, 0.01]))
 #[pyclass(name = "Keep", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyKeep {
@@ -178,7 +179,7 @@ impl PyKeep {
 /// For example:
 ///
 ///     >>> arm = bik.Robot.named("panda")
-///     >>> keep = bik.upright(arm, tilt=np.radians(15))
+///     >>> keep = bik.upright(arm, tilt=0.25)
 #[pyfunction]
 #[pyo3(signature = (robot, *, axis=None, direction=None, tilt=0.1, tip=None),
        text_signature = "(robot, *, axis=(0, 0, 1), direction=(0, 0, -1), tilt=0.1, tip=None)")]

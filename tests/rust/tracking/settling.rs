@@ -45,7 +45,8 @@ fn scene(seed: u64) -> Option<(Session, Target)> {
     let mut shape = |k: usize| {
         let center = [0.0, 0.0, 0.5].map(|middle| middle + rng.uniform_in(-0.8, 0.8));
         let size: [f64; 3] = std::array::from_fn(|_| rng.uniform_in(0.05, 0.4));
-        if k % 2 == 0 { Shape::cuboid(center, size, None) } else { Shape::sphere(center, 0.5 * size[0]) }.unwrap()
+        if k.is_multiple_of(2) { Shape::cuboid(center, size, None) } else { Shape::sphere(center, 0.5 * size[0]) }
+            .unwrap()
     };
     let obstacles: Vec<Shape> = (0..6).map(&mut shape).collect();
     let [start, end] = [(); 2].map(|()| drawn(&robot, &mut rng));
