@@ -3751,6 +3751,7 @@ def plan_along_path(
     start_q: ArrayLike | None = None,
     start_slack: ArrayLike | None = None,
     task: Task | None = None,
+    keep: _Keeps = None,
     limits: Limits | None = None,
     method: Literal["timed", "tpbso"] | TPBSO = "timed",
     objective: Literal["time", "joint_travel"] = "time",
