@@ -192,11 +192,34 @@ impl Keep {
         entries
     }
 
-    /// The task with its tolerances multiplied by `fraction`, and its target.
-    pub(super) fn narrowed(&self, fraction: f64) -> (CheckedTask, Target) {
-        let mut task = self.task.clone();
-        task.criterion.narrow(fraction);
-        (task, self.target)
+    /// The task and its target, aimed at `wide` of its tolerances by what lies beyond that.
+    ///
+    /// What has a narrow tolerance is aimed at the target itself, to within `narrow` of it: of errors that come and go within a narrow
+    /// band, those outside would push the others out again. Narrow and wide entries of one task are two tasks.
+    pub(super) fn aimed(&self, [narrow, wide]: [f64; 2]) -> Vec<(CheckedTask, Target)> {
+        let part = |is_narrow: bool, keeps_entry: &dyn Fn(f64) -> bool| {
+            let mut task = self.task.clone();
+            if let Some(components) = &mut task.criterion.components
+                && let Some(tolerance) = &mut components.tolerance
+            {
+                for (weight, tolerance) in components.weights.iter_mut().zip(tolerance) {
+                    if !keeps_entry(*tolerance) {
+                        (*weight, *tolerance) = (0.0, f64::INFINITY);
+                    }
+                }
+            }
+            task.criterion.narrow(if is_narrow { narrow } else { wide });
+            task.criterion = if is_narrow { task.criterion.exact() } else { task.criterion.beyond_tolerance() };
+            (task, self.target)
+        };
+        if !self.is_narrow() {
+            return vec![part(false, &|_| true)];
+        }
+        let has_wide = self.gauges.iter().any(|gauge| !gauge.is_of_task() || gauge.tolerance >= NARROW);
+        let tolerances = self.task.criterion.components.and_then(|components| components.tolerance);
+        let split = has_wide && (tolerances.is_some() || self.task.criterion.region.is_some());
+        let wide = split.then(|| part(false, &|tolerance| tolerance >= NARROW));
+        std::iter::once(part(true, &|tolerance| tolerance < NARROW)).chain(wide).collect()
     }
 
     pub(super) fn subject(&self) -> &Subject {
@@ -240,4 +263,4 @@ pub(crate) fn refuse_broken(what: &str, keeps: &[Keep], robot: &Robot, q: &[f64]
 }
 
 /// Tolerance (m, rad) below which the ways that keep it have no room for straight lines.
-const NARROW: f64 = 2e-3;
+const NARROW: f64 = 5e-3;

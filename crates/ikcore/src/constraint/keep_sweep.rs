@@ -13,7 +13,7 @@ use crate::obstacle::JointMotion;
 use crate::robot::Robot;
 
 /// Intervals examined before a motion counts as one that breaks a constraint.
-const MOST_INTERVALS: usize = 400_000;
+const MOST_INTERVALS: usize = 150_000;
 
 /// Fraction of a tolerance by which the largest error found may exceed the true one.
 const SLACK: f64 = 0.01;
@@ -96,17 +96,7 @@ impl<'a> KeepSweep<'a> {
     /// # Errors
     /// [`Broken`]: a place at which one does not, or is too near to its tolerance to tell.
     pub fn check(&mut self, motion: &impl JointMotion, ends: [f64; 2]) -> Result<(), Broken> {
-        self.check_within(motion, ends, MOST_INTERVALS)
-    }
-
-    /// [`check`](Self::check) in at most `most` intervals.
-    pub(crate) fn check_within(
-        &mut self,
-        motion: &impl JointMotion,
-        ends: [f64; 2],
-        most: usize,
-    ) -> Result<(), Broken> {
-        self.walk(motion, ends, most, &mut Tolerances(self.keeps)).map_err(|(at, keep)| {
+        self.walk(motion, ends, MOST_INTERVALS, &mut Tolerances(self.keeps)).map_err(|(at, keep)| {
             let mut q = Point::from_elem(0.0, self.robot.dof());
             motion.write(at, &mut q);
             let broken = self.keeps[keep].broken_at(self.robot, &q);
@@ -125,8 +115,9 @@ impl<'a> KeepSweep<'a> {
         let none = |keep: &Keep| vec![f64::NEG_INFINITY; keep.gauges.len()];
         let mut largest = Largest { keeps: self.keeps, seen: self.keeps.iter().map(none).collect(), proven: vec![] };
         largest.proven = largest.seen.clone();
-        if let Err((_, keep)) = self.walk(motion, ends, MOST_INTERVALS, &mut largest) {
-            largest.proven[keep].fill(f64::INFINITY);
+        if self.walk(motion, ends, MOST_INTERVALS, &mut largest).is_err() {
+            // What comes after the end of the walk was not examined for any of them.
+            largest.proven.iter_mut().for_each(|proven| proven.fill(f64::INFINITY));
         }
         let Largest { seen, proven, .. } = largest;
         let of_keep = |((keep, seen), proven): ((&Keep, Vec<f64>), Vec<f64>)| {

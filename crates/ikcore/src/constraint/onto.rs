@@ -35,12 +35,7 @@ pub(crate) struct KeepTasks {
 impl KeepTasks {
     /// The tasks of `keeps`.
     pub fn new(keeps: &[Keep]) -> Self {
-        let aimed = |keep: &Keep| {
-            let (mut task, target) = keep.narrowed(if keep.is_narrow() { AIMED_AT_NARROW } else { AIMED_AT });
-            task.criterion = task.criterion.beyond_tolerance();
-            (task, target)
-        };
-        let (tasks, targets) = keeps.iter().map(aimed).unzip();
+        let (tasks, targets) = keeps.iter().flat_map(|keep| keep.aimed([AIMED_AT_NARROW, AIMED_AT])).unzip();
         Self { tasks, targets, scratch: Linearization::default() }
     }
 

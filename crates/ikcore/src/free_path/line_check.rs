@@ -51,7 +51,7 @@ impl<'a> LineCheck<'a> {
 
     fn is_kept(&mut self, from: &[f64], to: &[f64]) -> bool {
         let Some(PathConstraints { sweep, .. }) = &mut self.kept else { return true };
-        sweep.check_within(&Edge { from, to }, [0.0, 1.0], INTERVALS).is_ok()
+        sweep.holds_within(&Edge { from, to }, [0.0, 1.0], INTERVALS)
     }
 
     /// Moves a configuration to where the constraints hold; false if no such is near it.

@@ -43,6 +43,11 @@ impl Criterion {
         self.components.as_ref().map_or(Ok(()), Components::validate)
     }
 
+    /// Criterion whose value is the whole error, without a region.
+    pub(crate) fn exact(self) -> Self {
+        Self { beyond: false, region: None, ..self }
+    }
+
     /// Multiplies all tolerances by `fraction`.
     pub(crate) fn narrow(&mut self, fraction: f64) {
         let Tolerance { position, rotation } = &mut self.tolerance;
