@@ -113,7 +113,7 @@ proptest! {
         rows in prop::collection::vec(coordinate(), 6..24),
         rates in [rate(), rate(), rate()],
         ends in prop_oneof![Just(SplineEnds::Natural), Just(SplineEnds::NotAKnot), Just(SplineEnds::Clamped)],
-        looser in [prop_oneof![Just(1.0), 1.0..4.0_f64], prop_oneof![Just(1.0), 1.0..4.0_f64], 1.0..4.0_f64],
+        looser in [prop_oneof![Just(1.0), 1.0..4.0_f64], prop_oneof![Just(1.0), 1.0..4.0_f64], prop_oneof![Just(1.0), 1.0..4.0_f64]],
     ) {
         let mut rows: Vec<f64> = rows[..rows.len() / 2 * 2].to_vec();
         // Consecutive points differ.
