@@ -24,9 +24,9 @@ from .._core import (
 
 if TYPE_CHECKING:
     from .gcode import GcodeMove, GcodeProgram, from_gcode
-    from .join import join
-    from .on_surface import on_surface
-    from .raster import raster
+    from .joining import join
+    from .passes import raster
+    from .projection import on_surface
     from .seam import Seam
 
 __all__ = [
@@ -47,15 +47,16 @@ __all__ = [
     "rose",
 ]
 
-# Names imported at their first use, with their modules: they need numpy, which `import beetle_ik` does not load.
+# Names imported at their first use, with their modules: they need numpy, which `import beetle_ik` does not load. A
+# module must not have a public name: its import would put it in that place.
 _LATER = {
     "GcodeMove": "gcode",
     "GcodeProgram": "gcode",
     "Seam": "seam",
     "from_gcode": "gcode",
-    "join": "join",
-    "on_surface": "on_surface",
-    "raster": "raster",
+    "join": "joining",
+    "on_surface": "projection",
+    "raster": "passes",
 }
 
 

@@ -6,34 +6,42 @@ from ..installed.needs import library
 from .checks import Array
 from .triangle_mesh import Indices, TriangleMesh
 
-_BLOCK = 64  # points that share one look at all triangles
+_BLOCK = 8  # points that share their candidates
 _SLACK = 1e-9  # of the diagonal, for rounding
 
 
 def nearest(mesh: TriangleMesh, points: Array) -> tuple[Array, Indices]:
     """Returns the nearest points (k, 3) of the mesh, and the faces (k,) they are on.
 
-    Triangles are bounded by balls. Those whose ball is nearer to a block of points than the farthest end of another
-    are candidates; of these each point takes its own, and trimesh finds the nearest point of each.
+    Points that follow each other are near each other: the candidates of a block of them are found among those of the
+    block twice as long. trimesh finds the nearest point of each candidate.
     """
-    centers = mesh.triangles.mean(axis=1)
-    radii = np.linalg.norm(mesh.triangles - centers[:, None], axis=2).max(axis=1)
-    found = [_of_block(mesh, block, centers, radii) for block in np.array_split(points, -(-len(points) // _BLOCK))]
-    return np.concatenate([at for at, _ in found]), np.concatenate([face for _, face in found])
-
-
-def _of_block(mesh: TriangleMesh, points: Array, centers: Array, radii: Array) -> tuple[Array, Indices]:
-    slack = _SLACK * mesh.diagonal
-    middle = points.mean(axis=0)
-    reach = np.linalg.norm(points - middle, axis=1).max()
-    distances = np.linalg.norm(centers - middle, axis=1)
-    near = np.flatnonzero(distances - radii <= (distances + radii).min() + 2.0 * reach + slack)
-    apart = np.linalg.norm(points[:, None] - centers[near], axis=2)
-    candidates = apart - radii[near] <= (apart + radii[near]).min(axis=1, keepdims=True) + slack
-    row, column = np.nonzero(candidates)
-    faces = near[column]
     closest_point = library("trimesh.triangles", "trimesh", "a line on a surface", extra="surfaces").closest_point
+    centers = mesh.triangles.mean(axis=1)
+    balls = np.column_stack([centers, np.linalg.norm(mesh.triangles - centers[:, None], axis=2).max(axis=1)])
+    pairs = _candidates(balls, points, np.arange(len(points)), np.arange(len(balls)), _SLACK * mesh.diagonal)
+    row, faces = (np.concatenate(part) for part in zip(*pairs, strict=True))
     at = np.asarray(closest_point(mesh.triangles[faces], points[row]), dtype=float)
     order = np.lexsort((np.linalg.norm(at - points[row], axis=1), row))
     best = order[np.searchsorted(row[order], np.arange(len(points)))]
     return at[best], faces[best]
+
+
+def _candidates(
+    balls: Array, points: Array, block: Indices, faces: Indices, slack: float
+) -> list[tuple[Indices, Indices]]:
+    """Returns pairs of points of the block and faces, among them the nearest face of each point.
+
+    Triangles are inside of balls (t, 4): centre and radius. One whose ball begins farther away than another ends is
+    not the nearest, and for a block not if it is farther by the diameter of the block.
+    """
+    middle = points[block].mean(axis=0)
+    reach = np.sqrt(((points[block] - middle) ** 2).sum(axis=1).max())
+    apart, radii = np.sqrt(((balls[faces, :3] - middle) ** 2).sum(axis=1)), balls[faces, 3]
+    faces = faces[apart - radii <= (apart + radii).min() + 2.0 * reach + slack]
+    if len(block) > _BLOCK:
+        halves = np.array_split(block, 2)
+        return [pair for half in halves for pair in _candidates(balls, points, half, faces, slack)]
+    apart, radii = np.linalg.norm(points[block][:, None] - balls[faces, :3], axis=2), balls[faces, 3]
+    row, column = np.nonzero(apart - radii <= (apart + radii).min(axis=1, keepdims=True) + slack)
+    return [(block[row], faces[column])]

@@ -24,11 +24,12 @@ def offsets_over(mesh: TriangleMesh, faces: Indices, across: Array, spacing: flo
     low, high = float(heights[mesh.faces[faces]].min()), float(heights[mesh.faces[faces]].max())
     if high - low < 1e-9 * mesh.diagonal:
         raise InvalidInputError("the covered part of the surface has no width across direction=")
-    width = (high - low) / _SLICES
+    # Slices are thinner towards both ends, where a round surface falls away.
+    bounds = low + 0.5 * (high - low) * (1.0 - np.cos(np.linspace(0.0, np.pi, _SLICES + 1)))
     slope = np.maximum(np.sqrt(np.maximum(1.0 - (mesh.normals @ across) ** 2, 0.0)), _FLATTEST)
-    middles = low + (np.arange(_SLICES) + 0.5) * width
+    middles = 0.5 * (bounds[:-1] + bounds[1:])
     stretch = np.array([_mean_stretch(mesh, heights - middle, faces, slope) for middle in middles])
-    along = np.concatenate([[0.0], np.cumsum(stretch * width)])
+    along = np.concatenate([[0.0], np.cumsum(stretch * np.diff(bounds))])
     covered = along[-1] - 2.0 * inset
     if covered / spacing > _MOST_ROWS:
         count = f"{covered / spacing:.3g} rows over {covered:.4g} m"
@@ -36,7 +37,7 @@ def offsets_over(mesh: TriangleMesh, faces: Indices, across: Array, spacing: flo
     count = 1 + max(0, math.ceil(covered / spacing * (1.0 - 1e-9)))
     at = np.linspace(inset, along[-1] - inset, count) if covered > 0.0 else np.array([0.5 * along[-1]])
     edge = 1e-9 * (high - low)  # a plane in the border cuts nothing
-    return np.asarray(np.clip(np.interp(at, along, np.linspace(low, high, _SLICES + 1)), low + edge, high - edge))
+    return np.asarray(np.clip(np.interp(at, along, bounds), low + edge, high - edge))
 
 
 def _mean_stretch(mesh: TriangleMesh, heights: Array, faces: Indices, slope: Array) -> float:

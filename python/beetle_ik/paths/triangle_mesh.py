@@ -108,7 +108,7 @@ def _arrays(surface: Any) -> tuple[Any, Any]:
         return corners, np.arange(len(corners)).reshape(-1, 3)
     if isinstance(surface, Obstacle) and not isinstance(surface, obstacles.Mesh):
         raise InvalidInputError(
-            f"surface: the triangles of a {type(surface).__name__} are only for drawing; make a mesh as fine as need be, "
+            f"surface: the triangles of a {type(surface).__name__} are only for drawing; make a finer mesh, "
             "for example with trimesh.creation, or give a Box, a ConvexMesh or a Mesh"
         )
     if hasattr(surface, "vertices") and hasattr(surface, "faces"):

@@ -8,6 +8,7 @@ from ..._core import InvalidInputError
 
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _WORD = re.compile(r"\s*([A-Za-z])\s*([+-]?(?:\d+\.?\d*|\.\d+))")
+_EXPONENT = re.compile(r"[A-Za-z]\s*[-+.\d]*[.\d]e[-+\d]+")
 _CHECKSUM = re.compile(r"\*\s*\d+\s*$")
 _NUMBER_OF_LINE = re.compile(r"^\s*[Nn]\s*\d+")
 _MACRO = re.compile(r"^(?:GOTO|IF|WHILE|DO|END|THEN)(?:\s|\d|\[|$)", re.IGNORECASE)
@@ -55,6 +56,8 @@ def _words(number: int, said: str) -> list[tuple[str, float]]:
     other = _OTHER.match(said)
     if other and not re.search(r"[GgXxYyZz]\s*[-+.\d]", said):  # an M word, whose parameters may be any text
         return [("M", float(other[1]))]
+    if exponent := _EXPONENT.search(said):
+        raise refused(number, f"{exponent[0]:.20}: numbers have no exponents in G-code")
     words = [(letter.upper(), float(value)) for letter, value in _WORD.findall(said)]
     if rest := _WORD.sub("", said).strip():
         raise refused(number, f"'{rest:.20}' is no word: a letter and a number, such as X10.5")

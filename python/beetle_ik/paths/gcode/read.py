@@ -86,7 +86,7 @@ def _text(file: object) -> tuple[str, str]:
     if not isinstance(file, str | os.PathLike):
         raise InvalidInputError(f"file must be a file, or the text of a program, got {file!r:.60}")
     try:
-        return f"{os.fspath(file)}: ", Path(file).read_text(encoding="utf-8", errors="replace")
+        return f"{os.fspath(file)}: ", Path(file).read_text(encoding="utf-8-sig", errors="replace")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         hint = "; a program given as text has at least two lines" if isinstance(file, str) else ""

@@ -95,22 +95,12 @@ def on_surface(
         lead_out=number("lead_out", lead_out),
         lead=choice("lead", lead, "normal", "tangent"),
     )
-    _require_near(mesh, line, _WITHIN * mesh.diagonal if within is None else number("within", within))
-    at, faces = _projected(mesh, np.concatenate([line, line[:1]]) if closed else line, spacing)
+    reach = _WITHIN * mesh.diagonal if within is None else number("within", within)
+    at, faces = _projected(mesh, np.concatenate([line, line[:1]]) if closed else line, spacing, reach)
     return frames_along(at, mesh.normals_at(at, faces, style.crease), style, closed=closed)
 
 
-def _require_near(mesh: TriangleMesh, points: Array, within: float) -> None:
-    distances = np.linalg.norm(nearest(mesh, points)[0] - points, axis=1)
-    worst = int(distances.argmax())
-    if distances[worst] > within:
-        raise InvalidInputError(
-            f"points[{worst}] is {distances[worst]:.4g} m from the surface, farther than within={within:.4g}: give a "
-            "larger within=, or move it nearer"
-        )
-
-
-def _projected(mesh: TriangleMesh, line: Array, step: float) -> tuple[Array, Indices]:
+def _projected(mesh: TriangleMesh, line: Array, step: float, within: float) -> tuple[Array, Indices]:
     """Returns points (m, 3) on the mesh along a line, no two the same, and their faces (m,)."""
     lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
     require_count("step", step, lengths.sum() / step)
@@ -120,6 +110,7 @@ def _projected(mesh: TriangleMesh, line: Array, step: float) -> tuple[Array, Ind
         np.repeat(np.arange(len(counts)), counts) + np.concatenate([np.arange(n) / n for n in counts]), len(counts)
     )
     at, faces = nearest(mesh, _along(line, where))
+    _require_near(line, at[np.append(0, np.cumsum(counts))], within)
     for _ in range(_HALVINGS):
         wide = np.flatnonzero(np.linalg.norm(np.diff(at, axis=0), axis=1) > _GAP / 2.0 * step)
         if not len(wide):
@@ -139,6 +130,16 @@ def _projected(mesh: TriangleMesh, line: Array, step: float) -> tuple[Array, Ind
     if kept.sum() < 2:
         raise InvalidInputError("points are all projected to one point of the surface: a line needs two")
     return at[kept], faces[kept]
+
+
+def _require_near(points: Array, at: Array, within: float) -> None:
+    distances = np.linalg.norm(at - points, axis=1)
+    worst = int(distances.argmax())
+    if distances[worst] > within:
+        raise InvalidInputError(
+            f"points[{worst}] is {distances[worst]:.4g} m from the surface, farther than within={within:.4g}: give a "
+            "larger within=, or move it nearer"
+        )
 
 
 def _along(line: Array, where: Array) -> Array:

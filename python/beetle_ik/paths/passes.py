@@ -12,7 +12,7 @@ from ..calls.wording import worded_call
 from .checks import Array, number, require_count
 from .checks import direction as unit
 from .frames_along import Style, frames_along
-from .on_surface import CREASE
+from .projection import CREASE
 from .rows_over import offsets_over
 from .seam import Seam
 from .section import Curve, sections
