@@ -1,4 +1,5 @@
 """Lines over surfaces: planes, spheres, cylinders and boxes, whose points and normals are known."""
+# ruff: noqa: E501 -- a row is a line
 
 import sys
 from pathlib import Path
@@ -49,7 +50,7 @@ def test_a_line_on_a_table_is_the_line_with_the_tool_down() -> None:
 
 
 def test_points_off_the_surface_are_moved_to_the_nearest() -> None:
-    seam = bik.paths.on_surface(TABLE, np.array(LINE) + [0.0, 0.05, 0.03])
+    seam = bik.paths.on_surface(TABLE, np.add(LINE, (0.0, 0.05, 0.03)))
     np.testing.assert_allclose(places(seam)[:, 1:], np.tile([0.05, 0.2], (len(seam), 1)), atol=1e-12)
 
 
@@ -184,6 +185,19 @@ def test_an_open_sheet_keeps_the_winding_of_most_faces() -> None:
     np.testing.assert_allclose(normals(bik.paths.on_surface((vertices, faces), line, flip=True))[:, 2], -1.0)
 
 
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 10.0])
+def test_small_and_large_meshes_are_alike(size: float) -> None:
+    line = [(0.2, 0.3, 0.0), (0.9, 0.4, 0.0)]
+    seam, one = (bik.paths.on_surface((s * CORNERS, SHEET[1]), np.multiply(s, line)) for s in (size, 1.0))
+    np.testing.assert_allclose(places(seam), size * places(one), atol=1e-14 * size)
+
+
+def test_no_call_hides_another() -> None:
+    bik.paths.raster(SHEET, spacing=0.2, direction=(1, 0, 0))
+    bik.paths.join(bik.paths.raster(SHEET, spacing=0.2, direction=(1, 0, 0)))
+    assert all(callable(getattr(bik.paths, name)) for name in bik.paths.__all__)
+
+
 def test_points_on_edges_and_corners_and_twice_are_taken() -> None:
     line = [(0, 0, 0), (0, 0, 0), (0.5, 0.5, 0), (1, 1, 0), (1, 1, 0), (1, 0, 0)]
     seam = bik.paths.on_surface(SHEET, line, rounding=0.01)
@@ -216,7 +230,6 @@ def test_a_mesh_in_millimetres_is_suspected() -> None:
 
 def test_a_file_without_trimesh_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(sys.modules, "trimesh", None)
-    monkeypatch.setitem(sys.modules, "trimesh.triangles", None)
     install = "trimesh: pip install 'beetle-ik[surfaces]'"
     options = {"spacing": 0.1, "direction": (1, 0, 0)}
     missing = bik.BeetleIkError
@@ -249,7 +262,7 @@ def test_rows_are_as_far_apart_along_a_sphere_as_asked() -> None:
     assert 0.019 < apart.mean() <= 0.02 + 1e-6
     for row in passes:
         radii = np.linalg.norm(places(row), axis=1)
-        assert (0.2 - 1e-4 < radii).all()
+        assert (radii > 0.2 - 1e-4).all()
         assert (radii < 0.2 + 1e-9).all()
         assert (normals(row)[:, 2] > -0.05).all()
 

@@ -11,6 +11,7 @@ from .._core import InvalidInputError
 
 Array = NDArray[np.float64]
 
+FARTHEST = 1e6  # m, coordinates that are taken
 MOST_POSES = 1_000_000
 """Poses of a path, at most: more is a slip in a step or a tolerance."""
 
@@ -41,9 +42,11 @@ def rows(name: str, value: ArrayLike, width: int, fewest: int) -> Array:
         raise InvalidInputError(f"{name}: expected shape (k, {width}), got {taken.shape}")
     if len(taken) < fewest:
         raise InvalidInputError(f"{name}: at least {fewest} are needed, got {len(taken)}")
-    if not np.isfinite(taken).all():
-        row = int(np.flatnonzero(~np.isfinite(taken).all(axis=1))[0])
-        raise InvalidInputError(f"{name}[{row}] must be finite, got {taken[row].tolist()}")
+    usable = (np.abs(taken) <= FARTHEST).all(axis=1)
+    if not usable.all():
+        row = int(np.flatnonzero(~usable)[0])
+        kind = f"within {FARTHEST:g} m" if np.isfinite(taken[row]).all() else "finite"
+        raise InvalidInputError(f"{name}[{row}] must be {kind}, got {taken[row].tolist()}")
     return np.asarray(taken, dtype=float)
 
 
@@ -63,10 +66,11 @@ def point(name: str, value: ArrayLike) -> Array:
 def direction(name: str, value: ArrayLike) -> Array:
     """Returns a direction (3,) of unit length."""
     taken = point(name, value)
-    length = float(np.linalg.norm(taken))
-    if length == 0.0:
+    largest = float(np.abs(taken).max())
+    if largest == 0.0:
         raise InvalidInputError(f"{name} must not be zero, got {taken.tolist()}")
-    return np.asarray(taken / length, dtype=float)
+    taken = taken / largest  # whose squares neither vanish nor overflow
+    return np.asarray(taken / np.linalg.norm(taken), dtype=float)
 
 
 def choice(name: str, value: object, *choices: str) -> str:

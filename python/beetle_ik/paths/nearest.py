@@ -1,5 +1,7 @@
 """Nearest points of a triangle mesh."""
 
+import math
+
 import numpy as np
 
 from ..installed.needs import library
@@ -16,12 +18,13 @@ def nearest(mesh: TriangleMesh, points: Array) -> tuple[Array, Indices]:
     Points that follow each other are near each other: the candidates of a block of them are found among those of the
     block twice as long. trimesh finds the nearest point of each candidate.
     """
-    closest_point = library("trimesh.triangles", "trimesh", "a line on a surface", extra="surfaces").closest_point
+    closest_point = library("trimesh", "trimesh", "a line on a surface", extra="surfaces").triangles.closest_point
     centers = mesh.triangles.mean(axis=1)
     balls = np.column_stack([centers, np.linalg.norm(mesh.triangles - centers[:, None], axis=2).max(axis=1)])
     pairs = _candidates(balls, points, np.arange(len(points)), np.arange(len(balls)), _SLACK * mesh.diagonal)
     row, faces = (np.concatenate(part) for part in zip(*pairs, strict=True))
-    at = np.asarray(closest_point(mesh.triangles[faces], points[row]), dtype=float)
+    size = 2.0 ** round(math.log2(mesh.diagonal))  # trimesh has absolute tolerances; a power of two rounds nothing
+    at = size * np.asarray(closest_point(mesh.triangles[faces] / size, points[row] / size), dtype=float)
     order = np.lexsort((np.linalg.norm(at - points[row], axis=1), row))
     best = order[np.searchsorted(row[order], np.arange(len(points)))]
     return at[best], faces[best]

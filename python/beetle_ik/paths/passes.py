@@ -77,7 +77,7 @@ def raster(
         >>> [round(float(row.poses[0, 1, 3]), 3) for row in passes]
         [-0.15, -0.05, 0.05, 0.15]
         >>> bik.paths.join(passes, lift=0.02)
-        Seam(532 poses, 1.62 m)
+        Seam(410 poses, 1.62 m)
     """
     mesh = mesh_of(surface, flip=flip)
     pitch = number("spacing", spacing, above=True)
@@ -157,7 +157,7 @@ def _sampled(curve: Curve, step: float, inset: float) -> tuple[Array, Indices]:
     """Returns points (m, 3) of a section at equal distances along it, away from its ends, and their faces (m,)."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve.points, axis=0), axis=1))])
     left_out = min(inset, 0.5 * (1.0 - _KEPT) * along[-1])
-    length = along[-1] - 2.0 * left_out
+    length = float(along[-1]) - 2.0 * left_out
     require_count("step", step, length / step)
     at = np.linspace(left_out, along[-1] - left_out, max(2, math.ceil(length / step * (1.0 - 1e-12)) + 1))
     line = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(curve.faces) - 1)

@@ -79,8 +79,10 @@ def on_surface(
 
         >>> table = bik.obstacles.Box((0.5, 0.0, 0.1), (0.4, 0.4, 0.2))
         >>> seam = bik.paths.on_surface(table, [(0.4, 0.0, 0.2), (0.6, 0.0, 0.2)], standoff=0.01)
-        >>> seam.poses[0].round(6).tolist()
-        [[1.0, 0.0, 0.0, 0.4], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.21], [0.0, 0.0, 0.0, 1.0]]
+        >>> seam
+        Seam(68 poses, 0.2 m)
+        >>> seam.poses[0, [0, 2], 3].round(6).tolist(), seam.poses[0, :3, 2].round(6).tolist()
+        ([0.4, 0.21], [0.0, 0.0, -1.0])
     """
     mesh = mesh_of(surface, flip=flip)
     line = rows("points", points, 3, 2)
@@ -103,7 +105,7 @@ def on_surface(
 def _projected(mesh: TriangleMesh, line: Array, step: float, within: float) -> tuple[Array, Indices]:
     """Returns points (m, 3) on the mesh along a line, no two the same, and their faces (m,)."""
     lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    require_count("step", step, lengths.sum() / step)
+    require_count("step", step, float(lengths.sum()) / step)
     counts = np.maximum(1, np.ceil(lengths / step * (1.0 - 1e-12)).astype(int))
     # Where along the line, in units of its pieces.
     where = np.append(

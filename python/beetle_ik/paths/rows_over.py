@@ -30,12 +30,13 @@ def offsets_over(mesh: TriangleMesh, faces: Indices, across: Array, spacing: flo
     middles = 0.5 * (bounds[:-1] + bounds[1:])
     stretch = np.array([_mean_stretch(mesh, heights - middle, faces, slope) for middle in middles])
     along = np.concatenate([[0.0], np.cumsum(stretch * np.diff(bounds))])
-    covered = along[-1] - 2.0 * inset
+    length = float(along[-1])
+    covered = length - 2.0 * inset
     if covered / spacing > _MOST_ROWS:
-        count = f"{covered / spacing:.3g} rows over {covered:.4g} m"
-        raise InvalidInputError(f"spacing: {spacing:g} m would make {count}; at most {_MOST_ROWS:,} are made")
+        needed = f"{covered / spacing:.3g} rows over {covered:.4g} m"
+        raise InvalidInputError(f"spacing: {spacing:g} m would make {needed}; at most {_MOST_ROWS:,} are made")
     count = 1 + max(0, math.ceil(covered / spacing * (1.0 - 1e-9)))
-    at = np.linspace(inset, along[-1] - inset, count) if covered > 0.0 else np.array([0.5 * along[-1]])
+    at = np.linspace(inset, length - inset, count) if covered > 0.0 else np.array([0.5 * length])
     edge = 1e-9 * (high - low)  # a plane in the border cuts nothing
     return np.asarray(np.clip(np.interp(at, along, bounds), low + edge, high - edge))
 

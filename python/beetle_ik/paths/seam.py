@@ -31,7 +31,7 @@ class Seam:
         >>> seam = bik.paths.on_surface(table, [(0.4, 0.0, 0.2), (0.6, 0.0, 0.2)], lead_in=0.05)
         >>> round(seam.length, 3), seam.contact[:2].tolist()
         (0.25, [False, True])
-        >>> seam.path(speed=0.1).duration
+        >>> round(seam.path(speed=0.1).duration, 6)
         2.5
     """
 

@@ -49,7 +49,7 @@ def arc_shares(
     sign = -1.0 if clockwise else 1.0
     turn = sign * (sign * (angles[1] - angles[0]) % math.tau or math.tau)  # an end at the start is a full circle
     # The rise of an arc of angle a over its chord is 2 r sin(a / 4)^2.
-    widest = min(_WIDEST, 4.0 * math.asin(math.sqrt(min(1.0, tolerance / (2.0 * max(radii))))))
+    widest = min(_WIDEST, 4.0 * math.asin(math.sqrt(min(1.0, max(1e-300, tolerance / (2.0 * max(radii)))))))
     require_count("tolerance", tolerance, abs(turn) / widest)
     count = max(2, math.ceil(abs(turn) / widest))
     share = np.arange(1, count + 1) / count

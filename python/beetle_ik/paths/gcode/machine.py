@@ -15,6 +15,7 @@ _WAITS = {4, 10, 11, 28, 29, 30}  # waits, retractions, homing, probing
 _CALLS = {96.0, 97.0, 98.0, 99.0}  # M words that leave the program
 _ENDS = {2.0, 30.0}
 _AXES, _TURNS, _OFFSETS = "XYZ", "ABC", "IJK"
+_LARGEST = 1e9  # number of a word
 _INCH, _MM = 0.0254, 0.001
 _WIDEST_TURN = math.radians(5.0)  # between points
 
@@ -75,6 +76,8 @@ class Machine:
         """Returns the values of axes, offsets, feed and extrusion; takes M words, and notes others."""
         values: dict[str, float] = {}
         for letter, value in line.words:
+            if abs(value) > _LARGEST:
+                raise refused(line.number, f"{letter}{value:g}: a number beyond {_LARGEST:g}")
             if letter == "M":
                 self._other(line, value)
             elif letter in "ST":
@@ -137,9 +140,9 @@ class Machine:
 
     def _take_feed(self, line: Line, values: dict[str, float]) -> None:
         if "F" in values:
-            if values["F"] <= 0.0:
-                raise refused(line.number, f"F{values['F']:g}: a feed must be positive")
             self.feed = values["F"] * self._unit / 60.0
+            if self.feed <= 0.0:
+                raise refused(line.number, f"F{values['F']:g}: a feed must be positive")
 
     def _move(self, line: Line, values: dict[str, float]) -> Part | None:
         extruded = self._extrude(values)

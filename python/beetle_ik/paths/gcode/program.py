@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,23 @@ from ..checks import Array, number
 from ..seam import Seam, seam_of
 
 
-class GcodeMove(NamedTuple):
-    """A move of a program: kind "rapid", "line" or "arc", from `poses[first]` to `poses[last]`."""
+@dataclass(frozen=True, slots=True)
+class GcodeMove:
+    """A move of a program.
+
+    Attributes:
+        kind: "rapid", "line" or "arc".
+        first: index of the pose where it begins.
+        last: index of the pose where it ends.
+        feed: speed of the tip (m/s); NaN for a rapid move.
+        line: line of the program, from 1.
+    """
 
     kind: str
     first: int
     last: int
     feed: float
-    """Speed of the tip (m/s); NaN for a rapid move."""
     line: int
-    """Line of the program, from 1."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
