@@ -31,10 +31,11 @@ def cut(mesh: TriangleMesh, heights: Array, faces: Indices) -> Cut:
     is special. All faces wind alike: lines of neighbours meet end to start, on an edge known by its vertices.
     """
     above = (heights >= 0.0)[mesh.faces[faces]]
-    crossing = np.flatnonzero(above.any(axis=1) & ~above.all(axis=1))
+    count = above[:, 0].astype(np.int8) + above[:, 1] + above[:, 2]
+    crossing = np.flatnonzero((count == 1) | (count == 2))
     above = above[crossing]
     # The corner that is alone on its side, and the other two in the order of winding.
-    alone_above = above.sum(axis=1) == 1
+    alone_above = count[crossing] == 1
     alone = np.where(alone_above, above.argmax(axis=1), above.argmin(axis=1))
     turn = (alone[:, None] + np.arange(3)) % 3
     corners = np.take_along_axis(mesh.faces[faces[crossing]], turn, axis=1)
