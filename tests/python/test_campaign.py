@@ -192,7 +192,7 @@ SPOILED = {
         "a point is kept, or taken out, against the padding",
     ),
     "surface_line": (
-        "poses = poses + 0.01",
+        "poses = poses.copy()\nposes[:, :3, 3] += 0.01",
         "the tool points beside the surface",
     ),
     "gcode_moves": (
