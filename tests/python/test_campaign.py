@@ -191,6 +191,18 @@ SPOILED = {
         "kept = kept[1:]\nremoved += 1",
         "a point is kept, or taken out, against the padding",
     ),
+    "surface_line": (
+        "poses = poses.copy()\nposes[:, :3, 3] += 0.01",
+        "the tool points beside the surface",
+    ),
+    "gcode_moves": (
+        "program = bik.paths.from_gcode(text.replace('G0 X0', 'G0 X1'))",
+        "a move ends at another point",
+    ),
+    "gcode": (
+        "poses = poses * nan",
+        "a program was read whose poses are not finite",
+    ),
     "urdf": (
         "pose = pose * nan",
         "a robot was read whose poses are not finite",
