@@ -353,7 +353,9 @@ mod tests {
         <limit lower="-1" upper="1" velocity="1" effort="1"/></joint><joint name="y" type="prismatic">
         <parent link="bridge"/><child link="ball"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>
         </joint></robot>"#;
-    const RADIUS: f64 = 0.01;
+    const RADIUS: f64 = 0.001;
+    /// Where the ball almost touches a face through the origin.
+    const BESIDE: f64 = RADIUS + 1e-6;
 
     /// Control points of a spline, from tick -2 on; the arm rests at the last.
     struct Spline<'a>(&'a [[f64; 2]]);
@@ -399,68 +401,70 @@ mod tests {
         least
     }
 
-    #[test]
-    fn a_command_around_an_edge_is_certified_before_it_too() {
-        let robot = gantry();
-        // The ball slides along one face to the edge, waits there, and would go on along the other face.
-        let obstacles = [Shape::cuboid([-0.1, -0.1, 0.0], [0.2, 0.2, 0.2], None).unwrap()];
-        let scene = Scene::new(&robot, &obstacles).unwrap();
-        let edge = RADIUS + 1e-9;
-        let past = [[-0.05, edge], [edge, edge], [edge, edge]];
-        let certifies = |command: [f64; 2]| {
-            let points = [past[0], past[1], past[2], command, command, command];
-            let mut check = MotionCertificate::new(&scene);
-            (check.is_clear(&scene, &Spline(&points), 2.0, &RequiredDistance::constant(0.0)), least_clearance(&scene, &points))
-        };
-        let (around, onward, braking) = ([edge, -0.05], [edge + 0.05, edge], [edge, edge]);
-        assert!(matches!(certifies(around), (false, clearance) if clearance < 0.0), "{:?}", certifies(around));
-        assert!(matches!(certifies(onward), (true, clearance) if clearance >= 0.0), "{:?}", certifies(onward));
-        assert!(certifies(braking).0);
+    /// Whether the motion from `past` to a rest at `command` is certified to keep `margin`.
+    fn certifies(scene: &Scene<'_>, past: [[f64; 2]; 3], command: [f64; 2], margin: f64) -> bool {
+        let points = [past[0], past[1], past[2], command, command, command];
+        MotionCertificate::new(scene).is_clear(scene, &Spline(&points), 2.0, &RequiredDistance::constant(margin))
     }
 
     #[test]
-    fn a_start_that_is_too_near_may_be_left() {
+    fn a_command_around_an_edge_is_certified_before_it_too() {
+        let robot = gantry();
+        let obstacles = [Shape::cuboid([-0.5, -0.5, 0.0], [1.0, 1.0, 0.2], None).unwrap()];
+        let scene = Scene::new(&robot, &obstacles).unwrap();
+        // The ball slides along one face to the edge, waits there for a tick, and would go on along the other face.
+        let (corner, around) = ([BESIDE, BESIDE], [BESIDE, -0.4]);
+        let past = [[-0.4, BESIDE], corner, corner];
+        assert!(least_clearance(&scene, &[past[0], past[1], past[2], around]) < 0.0);
+        assert!(least_clearance(&scene, &[past[1], past[2], around, around, around]) >= 0.0, "later it is clear");
+        assert!(!certifies(&scene, past, around, 0.0));
+        let along = [-0.3, -0.2, -0.1].map(|x| [x, BESIDE]);
+        assert!(certifies(&scene, along, [0.0, BESIDE], 0.0));
+    }
+
+    #[test]
+    fn a_start_that_was_too_near_may_be_left() {
         let robot = gantry();
         let obstacles = [Shape::cuboid([0.0, -0.1, 0.0], [1.0, 0.2, 0.2], None).unwrap()];
         let scene = Scene::new(&robot, &obstacles).unwrap();
-        let certifies = |command: f64| {
-            let points = [0.012, 0.0125, 0.0135, command, command, command].map(|y| [0.0, y]);
-            MotionCertificate::new(&scene).is_clear(&scene, &Spline(&points), 2.0, &RequiredDistance::constant(0.003))
-        };
-        assert!(certifies(0.015) && !certifies(0.012));
+        let past = [0.012, 0.0135, 0.0145].map(|y| [0.0, y]);
+        let margin = 0.013 - RADIUS;
+        assert!(certifies(&scene, past, [0.0, 0.015], margin));
+        assert!(!certifies(&scene, past, [0.0, 0.0125], margin));
     }
 
     #[test]
     fn what_is_called_clear_is_clear_at_every_instant() {
         let robot = gantry();
-        let (mut clear, mut bent) = (0, 0);
+        let (mut clear, mut refused) = (0, 0);
         let mut rng = rng::stream(38, 0);
-        for _ in 0..4000 {
-            let size = [0.001, 0.01, 0.05][(rng.uniform_in(0.0, 3.0) as usize).min(2)];
-            let around = |rng: &mut rng::LazyRng, most: f64| [(); 2].map(|()| rng.uniform_in(-most, most));
-            let [x, y] = around(&mut rng, 0.02);
-            let obstacle = if rng.uniform_in(0.0, 1.0) < 0.5 {
-                Shape::sphere([x, y, 0.0], size)
-            } else {
-                Shape::cuboid([x, y, 0.0], [size, 2.0 * size, 0.1], None)
+        for _ in 0..30_000 {
+            let half = [0.002, 0.02, 0.1][rng.uniform_in(0.0, 3.0) as usize % 3];
+            let obstacle = match rng.uniform_in(0.0, 1.0) < 0.3 {
+                true => Shape::sphere([0.0; 3], half),
+                false => Shape::cuboid([0.0; 3], [2.0 * half, 2.0 * half, 0.1], None),
             };
             let obstacles = [obstacle.unwrap()];
             let scene = Scene::new(&robot, &obstacles).unwrap();
-            let mut points: Vec<[f64; 2]> = (0..6).map(|_| around(&mut rng, 0.06 + size)).collect();
-            points.push(points[5]);
-            points.push(points[5]);
-            if points[..3].iter().any(|q| scene.clearance(q).unwrap() < 0.0) {
+            let mut coordinate = || match rng.uniform_in(-1.0, 1.0) {
+                x if x > 0.4 => half + BESIDE,
+                x if x < -0.6 => -half - BESIDE,
+                _ => rng.uniform_in(-1.0, 1.0) * (half + 0.05),
+            };
+            let mut point = || [coordinate(), coordinate()];
+            let [before, here, command] = [point(), point(), point()];
+            let past = [before, here, here];
+            if past.iter().any(|q| scene.clearance(q).unwrap() < 0.0) {
                 continue;
             }
-            let end = points.len() as f64 - 4.0;
-            if MotionCertificate::new(&scene).is_clear(&scene, &Spline(&points), end, &RequiredDistance::constant(0.0)) {
-                let least = least_clearance(&scene, &points);
-                assert!(least >= -1e-9, "{least} m at {points:?} about {x}, {y}, {size}");
+            if certifies(&scene, past, command, 0.0) {
+                let least = least_clearance(&scene, &[before, here, here, command, command, command]);
+                assert!(least >= -1e-9, "{least} m from {before:?} by {here:?} to {command:?}, half {half} m");
                 clear += 1;
             } else {
-                bent += 1;
+                refused += 1;
             }
         }
-        assert!(clear > 200 && bent > 200, "{clear} {bent}");
+        assert!(clear > 500 && refused > 500, "{clear} {refused}");
     }
 }
