@@ -67,8 +67,8 @@ class ClearCurves(Clear):
         if random.random() < 0.5:
             rates["jerk"] = random.choice([200.0, 2000.0, 20000.0])
         return {
-            "robot": name, "radius": radius, "start": tuple(start.tolist()), "scene": scene, "life": life, "margin": near,
-            "rates": tuple((kind, float(rate)) for kind, rate in rates.items()),
+            "robot": name, "radius": radius, "start": tuple(start.tolist()), "scene": scene, "life": life,
+            "margin": near, "rates": tuple((kind, float(rate)) for kind, rate in rates.items()),
             "dt": float(random.choice([0.02, 0.05] if hard else [0.01, 0.02, 0.05])),
         }  # fmt: skip
 

@@ -394,7 +394,8 @@ mod tests {
                 let s = f64::from(i) / 200.0;
                 let r = 1.0 - s;
                 let weights = [r.powi(3), 3.0 * s * s * (s - 2.0) + 4.0, 3.0 * r * r * (r - 2.0) + 4.0, s.powi(3)];
-                let at = |j: usize| (weights[0] * a[j] + weights[1] * b[j] + weights[2] * c[j] + weights[3] * d[j]) / 6.0;
+                let at =
+                    |j: usize| (weights[0] * a[j] + weights[1] * b[j] + weights[2] * c[j] + weights[3] * d[j]) / 6.0;
                 least = least.min(scene.clearance(&[at(0), at(1)]).unwrap());
             }
         }
@@ -416,7 +417,10 @@ mod tests {
         let (corner, around) = ([BESIDE, BESIDE], [BESIDE, -0.4]);
         let past = [[-0.4, BESIDE], corner, corner];
         assert!(least_clearance(&scene, &[past[0], past[1], past[2], around]) < 0.0);
-        assert!(least_clearance(&scene, &[past[1], past[2], around, around, around]) >= 0.0, "later it is clear");
+        // From the command on it is clear, and certified.
+        let later = [past[0], past[1], past[2], around, around, around];
+        let (mut check, kept) = (MotionCertificate::new(&scene), RequiredDistance::constant(0.0));
+        assert!(check.check(&scene, &Spline(&later), [0.0, 2.0], scene.pairs(), &kept).is_ok());
         assert!(!certifies(&scene, past, around, 0.0));
         let along = [-0.3, -0.2, -0.1].map(|x| [x, BESIDE]);
         assert!(certifies(&scene, along, [0.0, BESIDE], 0.0));
@@ -438,7 +442,7 @@ mod tests {
         let robot = gantry();
         let (mut clear, mut refused) = (0, 0);
         let mut rng = rng::stream(38, 0);
-        for _ in 0..30_000 {
+        for _ in 0..6000 {
             let half = [0.002, 0.02, 0.1][rng.uniform_in(0.0, 3.0) as usize % 3];
             let obstacle = match rng.uniform_in(0.0, 1.0) < 0.3 {
                 true => Shape::sphere([0.0; 3], half),
@@ -465,6 +469,6 @@ mod tests {
                 refused += 1;
             }
         }
-        assert!(clear > 500 && refused > 500, "{clear} {refused}");
+        assert!(clear > 100 && refused > 100, "{clear} {refused}");
     }
 }
