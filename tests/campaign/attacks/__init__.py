@@ -6,6 +6,7 @@ from ..attack import Attack
 from . import (
     calibration,
     calls,
+    clear_curves,
     clearance,
     command_line,
     dead_ends,
@@ -46,6 +47,7 @@ _MODULES = (
     kept,
     joint_weights,
     clearance,
+    clear_curves,
     own_points,
     paths_over,
     readers,
