@@ -711,6 +711,7 @@ class Status(IntEnum):
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
+    LEVEL_GIVEN_UP = 19
 
 @final
 class APPS:
@@ -1408,6 +1409,9 @@ class Task:
     @property
     def region(self) -> _Array | None:
         """Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box."""
+    @property
+    def level(self) -> int:
+        """Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these allow."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1435,6 +1439,7 @@ class Pose(Task):
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
         first: str | None = None,
+        level: int = 0,
     ) -> Pose: ...
     @property
     def first(self) -> str | None:
@@ -1461,6 +1466,7 @@ class Position(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Position: ...
 
 @final
@@ -1482,6 +1488,7 @@ class Orientation(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Orientation: ...
 
 @final
@@ -1506,6 +1513,7 @@ class Pointing(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array:

@@ -5,12 +5,13 @@
 //! only. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the joint accelerations. Without noise the arm
 //! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
-use super::tick::{Tick, TickResult};
-use crate::ik::RankedDescent;
+use super::tick::{BY_LEVELS, Tick, TickResult};
+use crate::ik::{LevelDescent, RankedDescent};
 use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, JointState, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
+use crate::task::Levels;
 use crate::tracking::step_context::StepContext;
 
 /// Largest number of Gauss-Newton steps in a tick; they converge quadratically.
@@ -97,11 +98,12 @@ impl GoalPursuit {
         found
     }
 
-    /// Solves for a sample within the tolerances where the target itself was not met, or of a pose of which one part comes first.
+    /// Solves for a sample within the tolerances where the target itself was not met, of a pose of which one part comes first, or of
+    /// several tips by levels.
     fn solve_in_order(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
-        let ranked = tick.ranked();
-        if ranked.is_none() && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
+        let (ranked, has_levels) = (tick.ranked(), tick.has_levels());
+        if ranked.is_none() && !has_levels && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
             return;
         }
         found.evaluations += 1;
@@ -113,6 +115,13 @@ impl GoalPursuit {
         found.evaluations += near.evaluations;
         if is_within {
             self.sample = near.q;
+            return;
+        }
+        if has_levels {
+            let levels = Levels::of(&aims);
+            let mut descent = LevelDescent::new(robot, &levels, positions, BY_LEVELS.min(tick.most_evaluations));
+            self.sample = descent.descend(&self.expected, None).q;
+            found.evaluations += descent.evaluations;
             return;
         }
         let Some((pose, first)) = ranked else { return };

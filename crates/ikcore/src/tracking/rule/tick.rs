@@ -8,9 +8,14 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
-use crate::task::{Aims, Assessment, CheckedTask, Criterion, First, Goals, SquaredError, Target, TargetSegment};
+use crate::task::{
+    Aims, Assessment, CheckedTask, Criterion, First, Goals, Levels, SquaredError, Target, TargetSegment,
+};
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
+
+/// Evaluation budget of a descent by levels in one tick. The next tick continues.
+pub(super) const BY_LEVELS: usize = 400;
 
 /// Evaluation budget of a descent to a configuration within the tolerances.
 const INTO_BAND: usize = 30;
@@ -50,6 +55,12 @@ impl Tick<'_> {
         let (Target::Pose(pose), [task]) = (self.target, aims.tasks) else { return None };
         let first = if robot.tip_count() == 1 { task.comes_first(self.target, robot.dof()) } else { None };
         Some((*pose, first?))
+    }
+
+    /// Whether the targets of several tips have an order.
+    pub(super) fn has_levels(&self) -> bool {
+        let StepContext { robot, aims, .. } = self.context;
+        robot.tip_count() > 1 && Levels::are_several(aims.tasks)
     }
 
     /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.
