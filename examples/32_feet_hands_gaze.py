@@ -16,7 +16,7 @@ X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
 
 
 def limb(name, parent, tip, joints, most):
-    """Returns a chain of joints, each an axis and its place after the one before."""
+    """Returns a chain of joints, each an axis and a place."""
     parts = []
     for i, (axis, xyz) in enumerate(joints):
         link = tip if i + 1 == len(joints) else f"{name}_{i}"

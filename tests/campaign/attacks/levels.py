@@ -77,11 +77,23 @@ class Levels(Attack):
         solution, wanted, chains = left["solution"], self.targets(case), self.chains(case)
         n = len(case["left"])
 
+        columns = [list(range(n + 1)), [0, *range(n + 1, len(solution.q))]]
+
+        def linearized(side: int, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            """The residual of one tip, position and rotation vector or its part, and its Jacobian at a small one."""
+            poses, own = arms.kinematics(chains[side], q[columns[side]][None])
+            jacobian = np.zeros((6, len(q)))
+            jacobian[:, columns[side]] = own[0]
+            rows = PARTS[case["kinds"][side]]
+            return _residual(poses[0], wanted[side])[rows], jacobian[rows]
+
         def error(side: int, q: np.ndarray) -> np.ndarray:
-            """The residual of one tip: position and rotation vector, or its part."""
-            values = q[: n + 1] if side == 0 else np.array([q[0], *q[n + 1 :]])
-            pose = arms.kinematics(chains[side], values[None])[0][0]
-            return _residual(pose, wanted[side])[PARTS[case["kinds"][side]]]
+            return linearized(side, q)[0]
+
+        def squared(q: np.ndarray) -> tuple[float, np.ndarray]:
+            """The squared residual of the higher level, and its gradient: a rotation vector is its own along it."""
+            residual, jacobian = linearized(1, q)
+            return float(residual @ residual), 2 * residual @ jacobian
 
         bounds = [np.concatenate([one, two[1:]]) for one, two in zip(*map(arms.bounds, chains), strict=True)]
         if np.maximum(bounds[0] - solution.q, solution.q - bounds[1]).max() > ROUNDING:
@@ -98,15 +110,15 @@ class Levels(Attack):
         if solution.success or not met[0]:
             return 1
         box = list(zip(*bounds, strict=True))
-        held = {"type": "eq", "fun": lambda q: error(0, q)}
-        options = {"maxiter": 100, "ftol": 1e-12}
+        held = {"type": "eq", "fun": lambda q: error(0, q), "jac": lambda q: linearized(0, q)[1]}
         found = minimize(
-            lambda q: float(error(1, q) @ error(1, q)),
+            squared,
             solution.q,
+            jac=True,
             method="SLSQP",
             bounds=box,
             constraints=[held],
-            options=options,
+            options={"maxiter": 100, "ftol": 1e-12},
         )
         nearer = float(np.linalg.norm(error(1, np.clip(found.x, *bounds))))
         kept = float(np.linalg.norm(error(0, np.clip(found.x, *bounds))))

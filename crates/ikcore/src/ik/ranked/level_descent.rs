@@ -35,6 +35,11 @@ const SAME: f64 = 1e-9;
 /// Corrections of the levels below after a step; they converge quadratically.
 const CORRECTIONS: usize = 5;
 
+/// Error of a level (m, rad) up to which products of its Jacobian are second derivatives enough to lower it, and the relative
+/// decrease of the squared error in a step from which they are enough for the next.
+const SMALL: f64 = 1e-3;
+const FAST: f64 = 0.5;
+
 /// Displacement (rad, m) of the differences that give second derivatives.
 const APART: f64 = 1e-6;
 
@@ -88,7 +93,7 @@ impl Rows {
 }
 
 impl<'a> LevelDescent<'a> {
-    /// Descents in the box `bounds` that end after this many `evaluations`.
+    /// Descents in the box `bounds` that end within this many `evaluations`, but for one for each level of a descent.
     pub fn new(robot: &'a Robot, levels: &'a Levels, bounds: &'a Bounds, evaluations: usize) -> Self {
         Self {
             robot,
@@ -134,16 +139,24 @@ impl<'a> LevelDescent<'a> {
         LevelPoint { q, errors }
     }
 
+    /// Lowers the error of the lowest level alone, from the nearest configurations on.
+    pub fn lower_lowest(&mut self, q: &mut Point) {
+        self.lower(0, q, &Errors::new());
+    }
+
     /// Lowers the error of level `k` as far as the levels below allow, whose errors are `below`; returns what is left of it.
     fn lower(&mut self, k: usize, q: &mut Point, below: &Errors) -> f64 {
         let space = self.space.filter(|space| space.holds(q));
         let mut value = self.value(k, q);
         let mut trial = q.clone();
+        let dearest = q.len() + 2 + HALVINGS * (CORRECTIONS + 2);
+        let mut is_bent = false;
         for _ in 0..MOST_STEPS {
-            if value <= MET || self.evaluations >= self.until {
+            if value <= MET || self.evaluations + dearest > self.until {
                 break;
             }
-            let models = self.models(k, q);
+            is_bent &= value > SMALL * SMALL;
+            let models = self.models(k, q, is_bent);
             let each: SmallVec<[&LevelModel; 4]> = models.iter().collect();
             write_level_step(&each, q, self.bounds.ends(), &mut trial);
             let (end, mut fraction) = (trial.clone(), 1.0);
@@ -159,12 +172,18 @@ impl<'a> LevelDescent<'a> {
                 }
                 fraction *= 0.5;
             }
-            let Some(after) = lowered else { break };
-            let (gain, length) = (1.0 - after / value, largest_difference(&trial, q));
-            q.copy_from_slice(&trial);
-            value = after;
-            if gain < NO_GAIN || length < SHORT {
+            let gain = lowered.map_or(0.0, |after| 1.0 - after / value);
+            let length = largest_difference(&trial, q);
+            if let Some(after) = lowered {
+                q.copy_from_slice(&trial);
+                value = after;
+            }
+            if gain >= NO_GAIN && length >= SHORT {
+                is_bent = gain < FAST;
+            } else if is_bent || value <= SMALL * SMALL {
                 break;
+            } else {
+                is_bent = true;
             }
         }
         value
@@ -197,13 +216,14 @@ impl<'a> LevelDescent<'a> {
         false
     }
 
-    /// Models of the levels up to number `k` at `q`. Of a level that is not met, the second derivatives are those of its Lagrangian:
-    /// the equations of the levels below count by their multipliers.
-    fn models(&mut self, k: usize, q: &[f64]) -> Vec<LevelModel> {
+    /// Models of the levels up to number `k` at `q`. Where an error is left, in that of level `k` itself if `own` is set, the second
+    /// derivatives are those of the Lagrangian: the equations of the levels below count by their multipliers.
+    fn models(&mut self, k: usize, q: &[f64], own: bool) -> Vec<LevelModel> {
         let rows: SmallVec<[Rows; 4]> = (0..=k).map(|j| self.rows(j, q)).collect();
         self.evaluations += 1;
         let mut models: Vec<LevelModel> = rows.iter().map(by_jacobian).collect();
-        if rows.iter().all(Rows::is_met) {
+        let bending: SmallVec<[usize; 4]> = (0..=k).filter(|i| !rows[*i].is_met() && (*i < k || own)).collect();
+        if bending.is_empty() {
             return models;
         }
         let multipliers: SmallVec<[Multipliers; 4]> = (0..=k).map(|i| self.multipliers(&rows[..=i], q)).collect();
@@ -213,13 +233,13 @@ impl<'a> LevelDescent<'a> {
             ahead[j] = q[j] + APART;
             let there: SmallVec<[Rows; 4]> = (0..=k).map(|i| self.rows(i, &ahead)).collect();
             self.evaluations += 1;
-            for i in (0..=k).filter(|i| !rows[*i].is_met()) {
+            for i in bending.iter().copied() {
                 let slope = |rows: &[Rows]| lagrangian_slope(&rows[..=i], &multipliers[i]);
                 bent[i].set_column(j, &((slope(&there) - slope(&rows)) / APART));
             }
             ahead[j] = q[j];
         }
-        for i in (0..=k).filter(|i| !rows[*i].is_met()) {
+        for i in bending {
             models[i].hessian = 0.5 * (&bent[i] + bent[i].transpose());
             models[i].flat = FLAT_BY_DIFFERENCES;
         }

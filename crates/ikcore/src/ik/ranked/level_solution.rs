@@ -10,8 +10,11 @@ use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Status, Stop, run};
 use crate::task::Levels;
 
-/// Scattered starts of the descents.
-const STARTS: usize = 12;
+/// Scattered starts in a row, none of which leads to less, after which the search ends.
+const PATIENCE: usize = 16;
+
+/// Fraction of the joints that a start near the best configuration draws anew.
+const REDRAWN: f64 = 0.4;
 
 /// Evaluation budget of the descent from such a start to the lowest level.
 const TO_LOWEST: usize = 40;
@@ -31,71 +34,105 @@ pub(in crate::ik) fn level_solution(
         return missed;
     }
     let levels = Levels::of(&attempt.problem.aims());
-    let seeds = seeds(attempt, &levels, &missed.q, start);
-    let points = least_of(attempt, &levels, &seeds);
+    let points = least_of(attempt, &levels, &missed.q, start);
     chosen(attempt, &levels, points, missed, start)
 }
 
-/// Starts that are near the lowest level: by the solver, from the miss, from the caller's start, and from scattered ones.
-fn seeds(attempt: &mut Attempt<'_, '_>, levels: &Levels, missed: &Point, start: Option<&[f64]>) -> Vec<Point> {
+/// Starts that are known: the caller's, the miss and, unless that meets the lowest level, what the solver finds for it alone.
+fn known_starts(
+    attempt: &mut Attempt<'_, '_>,
+    lowest: &mut Problem<'_>,
+    missed: &Point,
+    start: Option<&[f64]>,
+) -> Vec<Point> {
     let context = attempt.context;
-    let mut seeds: Vec<Point> = start.map(Point::from_slice).into_iter().collect();
-    seeds.push(missed.clone());
-    let mut lowest = Problem::of_configuration(context.robot(), levels.aims(0), None);
-    if !levels.lowest_is_met(context.robot(), missed) {
+    let mut starts: Vec<Point> = start.map(Point::from_slice).into_iter().collect();
+    starts.push(missed.clone());
+    let is_open = !lowest.assess(missed).score.solved && lowest.reach_shortfall(context.bounds()).is_none();
+    if is_open {
         let rest = attempt.budget.rest(attempt.budget.left() / 2);
-        let objective: &mut dyn Differentiable = &mut lowest;
+        let objective: &mut dyn Differentiable = lowest;
         let mut evaluator = Evaluator::new(objective, context.bounds(), rest, attempt.rng, attempt.monitor);
         context.solver().run(&mut evaluator, start.unwrap_or(missed));
         attempt.budget.add(&evaluator);
         // Without a budget nothing was evaluated, and there is no best point.
         if evaluator.evaluations() > 0 {
-            seeds.push(Point::from_slice(&evaluator.best().x));
+            starts.push(Point::from_slice(&evaluator.best().x));
         }
     }
-    let mut x0 = attempt.first_start(None);
-    for _ in 0..STARTS {
-        if attempt.budget.left() < TO_LOWEST || !attempt.monitor.keep_going() {
-            break;
-        }
-        let objective: &mut dyn Differentiable = &mut lowest;
-        let stop = Stop { max_evaluations: TO_LOWEST, ..Stop::default() };
-        let mut evaluator = Evaluator::new(objective, context.bounds(), stop, attempt.rng, attempt.monitor);
-        run(&LevenbergMarquardt::default(), &mut evaluator, &x0);
-        attempt.budget.add(&evaluator);
-        seeds.push(Point::from_slice(&evaluator.best().x));
-        attempt.next_start(&mut x0);
-    }
-    seeds
+    starts
 }
 
-/// Descends from the seeds, and returns the points with the least errors, level by level.
-fn least_of(attempt: &mut Attempt<'_, '_>, levels: &Levels, seeds: &[Point]) -> Vec<LevelPoint> {
+/// Writes another start into `q`, near the lowest level: scattered or, if given, with some joints of `best` drawn anew.
+fn write_start(attempt: &mut Attempt<'_, '_>, lowest: &mut Problem<'_>, best: Option<&Point>, q: &mut Point) {
     let context = attempt.context;
-    let descent = LevelDescent::new(context.robot(), levels, context.bounds(), attempt.budget.left());
-    let mut descent = descent.within(context.space());
-    let mut points: Vec<LevelPoint> = vec![];
-    let mut best: Option<Errors> = None;
-    for seed in seeds {
-        if descent.evaluations >= descent.until || !points.is_empty() && !attempt.monitor.keep_going() {
+    match best {
+        None => attempt.next_start(q),
+        Some(best) => {
+            let [lower, upper] = context.sampling_ranges();
+            for (j, q) in q.iter_mut().enumerate() {
+                let is_redrawn = attempt.rng.uniform_in(0.0, 1.0) < REDRAWN;
+                *q = if is_redrawn { attempt.rng.uniform_in(lower[j], upper[j]) } else { best[j] };
+            }
+        }
+    }
+    let objective: &mut dyn Differentiable = lowest;
+    let stop = Stop { max_evaluations: TO_LOWEST, ..Stop::default() };
+    let mut evaluator = Evaluator::new(objective, context.bounds(), stop, attempt.rng, attempt.monitor);
+    run(&LevenbergMarquardt::default(), &mut evaluator, q);
+    attempt.budget.add(&evaluator);
+    q.copy_from_slice(&evaluator.best().x);
+}
+
+/// Descends from all starts, and returns the points with the least errors, level by level.
+fn least_of(attempt: &mut Attempt<'_, '_>, levels: &Levels, missed: &Point, start: Option<&[f64]>) -> Vec<LevelPoint> {
+    let context = attempt.context;
+    let mut lowest = Problem::of_configuration(context.robot(), levels.aims(0), None);
+    let known = known_starts(attempt, &mut lowest, missed, start);
+    let mut descent = LevelDescent::new(context.robot(), levels, context.bounds(), 0).within(context.space());
+    let (mut points, mut best): (Vec<LevelPoint>, Option<LevelPoint>) = (vec![], None);
+    let (mut number, mut idle, mut q) = (0, 0, missed.clone());
+    while idle < PATIENCE {
+        let is_over = attempt.budget.left() < TO_LOWEST + levels.len() || attempt.budget.is_spent();
+        if is_over || !points.is_empty() && !attempt.monitor.keep_going() {
             break;
         }
-        let point = descent.descend(seed, best.as_ref());
+        match known.get(number) {
+            Some(start) => q.copy_from_slice(start),
+            None => {
+                let near = best.as_ref().filter(|_| number % 2 == 0).map(|best| &best.q);
+                write_start(attempt, &mut lowest, near, &mut q);
+                attempt.budget.restarts += 1;
+                idle += 1;
+            }
+        }
+        number += 1;
+        (descent.evaluations, descent.until) = (0, attempt.budget.left());
+        let point = descent.descend(&q, best.as_ref().map(|best| &best.errors));
+        attempt.budget.evaluations += descent.evaluations;
         if context.space().is_some_and(|space| !space.holds(&point.q)) {
             continue;
         }
-        if best.as_ref().is_none_or(|best| point.errors < *best) {
-            best = Some(point.errors.clone());
+        if best.as_ref().is_none_or(|best| is_less(&point.errors, &best.errors)) {
+            (best, idle) = (Some(point.clone()), 0);
         }
         points.push(point);
     }
-    attempt.budget.evaluations += descent.evaluations;
     for k in 0..levels.len() {
         let error = |point: &LevelPoint| point.errors[k].sqrt();
         let least = points.iter().map(error).fold(f64::INFINITY, f64::min);
         points.retain(|point| error(point) <= least * (1.0 + RELATIVE) + SAME);
     }
     points
+}
+
+/// Whether the first level whose errors differ has less in `one`.
+fn is_less(one: &Errors, other: &Errors) -> bool {
+    let differ = |(a, b): (&f64, &f64)| {
+        let [a, b] = [a.sqrt(), b.sqrt()];
+        ((a - b).abs() > RELATIVE * b + SAME).then_some(a < b)
+    };
+    one.iter().zip(other).find_map(differ).unwrap_or(false)
 }
 
 /// Returns the one of `points` that the caller prefers, or `missed` without any.

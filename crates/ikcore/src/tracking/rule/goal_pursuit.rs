@@ -158,6 +158,7 @@ impl GoalPursuit {
             Some(goal) if !found.interrupted => {
                 let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.bounds());
                 Pursuit { goal, braking, scales, reachable }.write(q, motion.state(), &mut found.q);
+                keep_lowest_level(&mut found, tick);
             }
             _ => {
                 found.q = motion.stopping(q);
@@ -283,4 +284,17 @@ impl GoalPursuit {
             self.sample = end.q;
         }
     }
+}
+
+/// Moves the command of joints that pursue their goals one by one to the nearest that meets the lowest level of the targets, as far as
+/// the tick allows.
+fn keep_lowest_level(found: &mut TickResult, tick: &Tick<'_>) {
+    let StepContext { robot, aims, .. } = tick.context;
+    if !tick.has_levels() {
+        return;
+    }
+    let levels = Levels::of(&aims);
+    let mut descent = LevelDescent::new(robot, &levels, tick.bounds(), BY_LEVELS);
+    descent.lower_lowest(&mut found.q);
+    found.evaluations += descent.evaluations;
 }
