@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 use super::assessment::Assessment;
 use super::checked_task::CheckedTask;
 use super::criterion::Criterion;
+use super::levels::Levels;
 use super::subject::Subject;
 use super::target::Target;
 use super::tip_error::{SquaredError, TipError};
@@ -94,6 +95,11 @@ impl<'a> Aims<'a> {
     /// Calls `keep` with the position (m) of each task's frame at `q`.
     pub(crate) fn positions(&self, robot: &Robot, q: &[f64], mut keep: impl FnMut([f64; 3])) {
         self.tasks.iter().for_each(|task| keep(task.frame(robot, q).origin));
+    }
+
+    /// Whether targets of several tips of `robot` have an order.
+    pub(crate) fn has_levels(&self, robot: &Robot) -> bool {
+        robot.tip_count() > 1 && Levels::are_several(self.tasks)
     }
 
     /// Whether any task is for a pair of tips that is held.

@@ -161,7 +161,7 @@ impl TrackedArm {
     /// Levels of the targets of several tips, if they have an order.
     pub fn levels(&self) -> Option<Levels> {
         let aims = self.aims();
-        (!self.has_one_tip() && Levels::are_several(aims.tasks)).then(|| Levels::of(&aims))
+        aims.has_levels(&self.robot).then(|| Levels::of(&aims))
     }
 
     /// Status of `found`, beyond the tolerances, if the part of the only target that comes first is met, or the lowest level of several.

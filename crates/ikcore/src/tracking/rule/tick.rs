@@ -8,9 +8,7 @@ use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::robot::Robot;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, Status, Stop, run};
-use crate::task::{
-    Aims, Assessment, CheckedTask, Criterion, First, Goals, Levels, SquaredError, Target, TargetSegment,
-};
+use crate::task::{Aims, Assessment, CheckedTask, Criterion, First, Goals, SquaredError, Target, TargetSegment};
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
 
@@ -59,8 +57,7 @@ impl Tick<'_> {
 
     /// Whether the targets of several tips have an order.
     pub(super) fn has_levels(&self) -> bool {
-        let StepContext { robot, aims, .. } = self.context;
-        robot.tip_count() > 1 && Levels::are_several(aims.tasks)
+        self.context.aims.has_levels(self.context.robot)
     }
 
     /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.
