@@ -139,7 +139,7 @@ impl<'a> LevelDescent<'a> {
         LevelPoint { q, errors }
     }
 
-    /// Lowers the error of the lowest level alone, from the nearest configurations on.
+    /// Lowers the error of the lowest level alone, by short steps.
     pub fn lower_lowest(&mut self, q: &mut Point) {
         self.lower(0, q, &Errors::new());
     }

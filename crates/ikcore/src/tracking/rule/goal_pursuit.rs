@@ -119,7 +119,7 @@ impl GoalPursuit {
         }
         if has_levels {
             let levels = Levels::of(&aims);
-            let mut descent = LevelDescent::new(robot, &levels, positions, BY_LEVELS.min(tick.most_evaluations));
+            let mut descent = LevelDescent::new(robot, &levels, positions, BY_LEVELS);
             self.sample = descent.descend(&self.expected, None).q;
             found.evaluations += descent.evaluations;
             return;

@@ -12,7 +12,8 @@ use crate::task::{Aims, Assessment, CheckedTask, Criterion, First, Goals, Square
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
 
-/// Evaluation budget of a descent by levels in one tick. The next tick continues.
+/// Evaluation budget of a descent by levels in one tick, even while a way back is looked for: the lowest level is not left alone. The
+/// next tick continues.
 pub(super) const BY_LEVELS: usize = 400;
 
 /// Evaluation budget of a descent to a configuration within the tolerances.

@@ -68,7 +68,7 @@ impl TipStep {
     fn by_levels(&mut self, begin: &TickResult, found: &mut TickResult, tick: &Tick<'_>) {
         let StepContext { robot, aims, tick_box, .. } = tick.context;
         let levels = Levels::of(&aims);
-        let mut descent = LevelDescent::new(robot, &levels, &tick_box.bounds, BY_LEVELS.min(tick.most_evaluations));
+        let mut descent = LevelDescent::new(robot, &levels, &tick_box.bounds, BY_LEVELS);
         let reached = descent.descend(&begin.q, None);
         found.evaluations += descent.evaluations + 1;
         found.iterations += descent.evaluations;
