@@ -690,6 +690,7 @@ class Status(IntEnum):
     - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
+    - `LEVEL_GIVEN_UP`: The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.
     """
 
     SOLVED = 0
@@ -711,6 +712,7 @@ class Status(IntEnum):
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
+    LEVEL_GIVEN_UP = 19
 
 @final
 class APPS:
@@ -1408,6 +1410,9 @@ class Task:
     @property
     def region(self) -> _Array | None:
         """Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box."""
+    @property
+    def level(self) -> int:
+        """Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these allow."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1425,6 +1430,8 @@ class Pose(Task):
             comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
             "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
             or a region.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1435,6 +1442,7 @@ class Pose(Task):
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
         first: str | None = None,
+        level: int = 0,
     ) -> Pose: ...
     @property
     def first(self) -> str | None:
@@ -1452,6 +1460,8 @@ class Position(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1461,6 +1471,7 @@ class Position(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Position: ...
 
 @final
@@ -1473,6 +1484,8 @@ class Orientation(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1482,6 +1495,7 @@ class Orientation(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Orientation: ...
 
 @final
@@ -1496,6 +1510,8 @@ class Pointing(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1506,6 +1522,7 @@ class Pointing(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array:
@@ -1616,7 +1633,8 @@ def solve(
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
             "right_tool") gives the pose of the second tip in the frame of the first.
-        task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
+        task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
+            not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
             For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
             search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
@@ -1778,7 +1796,7 @@ def solve_all(
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
-            configurations.
+            configurations; tasks of several tips of different levels, which all solutions would meet.
         LimitError: limits that contradict each other.
 
     For example:
@@ -2968,6 +2986,7 @@ class Step:
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
         HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
         IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
     @property
@@ -3384,7 +3403,8 @@ class Keep:
             with an infinite one, or of weight 0, are free. None: all of the target, within 1e-6.
 
     Raises:
-        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep.
+        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep; a task
+            with a level, since what is kept comes before all targets.
 
     For example, a hand that stays within 1 cm of the plane z = 0.3 m:
 

@@ -66,6 +66,10 @@ SPOILED = {
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),
     "two_hands": ("solution = Changed(solution, q=solution.q + 1e-4)", "position_error is not the error"),
+    "levels": (
+        "solution = Changed(solution, q=solution.q + 1.0)",
+        "q is outside the limits",
+    ),
     "self_motions": (
         "curves = [Changed(curve, q=curve.q + 1e-6) for curve in curves]",
         "a configuration of the curve misses the target",

@@ -18,7 +18,7 @@ use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Status, Stopwatch};
-use crate::task::{Aims, CheckedTask, First, Goal, Goals, SquaredError, Target, TargetRow};
+use crate::task::{Aims, CheckedTask, First, Goal, Goals, Levels, SquaredError, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -175,6 +175,30 @@ impl<'a> SolveContext<'a> {
         }
         let dof = if self.options.solver.is_none() { self.robot.dof() } else { usize::MAX };
         if self.robot.tip_count() == 1 { task.comes_first(target, dof) } else { None }
+    }
+
+    /// Whether the tasks of several tips have levels, of which the lower ones come first where not all targets can be met.
+    pub(super) fn has_levels(&self) -> bool {
+        self.robot.tip_count() > 1 && !self.options.whole_only && Levels::are_several(&self.tasks)
+    }
+
+    /// Checks that the tasks have one level: solutions that meet all targets leave nothing to put first.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`].
+    pub(super) fn require_one_level(&self) -> Result<()> {
+        let level = |task: &CheckedTask| task.level;
+        let (lowest, highest) = (self.tasks.iter().map(level).min(), self.tasks.iter().map(level).max());
+        if lowest == highest {
+            return Ok(());
+        }
+        let problem = format!(
+            "all solutions meet all targets, so levels from {} to {} have no effect: give all tasks one level, or solve for one \
+             configuration, which meets them in their order",
+            lowest.unwrap_or_default(),
+            highest.unwrap_or_default()
+        );
+        Err(Error::Contradiction { problem: problem.into() })
     }
 
     /// Status at an error beyond the tolerances, if the part that comes first is met.

@@ -328,6 +328,7 @@ fn with_position(task: &Task) -> Task {
             tool: None,
             region: None,
             first: None,
+            level: task.level,
         },
         _ => Task { tool: None, ..*task },
     }
