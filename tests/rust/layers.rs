@@ -131,6 +131,10 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "moves",
+        &["robot", "trajectory", "objective", "limits", "constraint", "obstacle", "task", "solver", "ik", "timing", "plan"],
+    ),
+    (
         "tpbso",
         &[
             "robot",
@@ -162,6 +166,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "free_path",
             "approach_retreat",
             "along_path",
+            "moves",
             "tpbso",
         ],
     ),
