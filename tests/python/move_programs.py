@@ -106,18 +106,19 @@ def draw(robot: bik.Robot, start: Array, count: int, random: np.random.Generator
         kind = random.choice(["joints", "line", "line", "line", "arc", "wait"])
         if kind == "joints":
             q = start + 0.3 * random.uniform(lower - start, upper - start)
+            blend = float(random.choice([0.0, 0.0, 0.01, 0.03]))
             if random.random() < 0.5:
                 pose = robot.fk(q)
-                program.append({"kind": "joints", "goal": pose})
+                program.append({"kind": "joints", "goal": pose, "blend": blend})
             else:
                 q = np.round(q, 1) if random.random() < 0.5 else q
                 q = np.clip(q, robot.lower, robot.upper)
                 pose = robot.fk(q)
-                program.append({"kind": "joints", "goal": q})
+                program.append({"kind": "joints", "goal": q, "blend": blend})
             continue
         if kind == "wait":
-            if program and program[-1].get("blend", 0.0) > 0.0:
-                program[-1]["blend"] = 0.0
+            if program:
+                program[-1].pop("blend", None)
             program.append({"kind": "wait", "seconds": float(random.choice([0.0, 0.5, random.uniform(0, 1)]))})
             continue
         radius = random.choice([0.05, 0.1, random.uniform(0.02, 0.2)])
@@ -135,9 +136,6 @@ def draw(robot: bik.Robot, start: Array, count: int, random: np.random.Generator
             move["via"] = pose[:3, 3] + 0.5 * way + 0.4 * np.cross(way, unit(random))
         program.append(move)
         pose = goal
-    for before, after in zip(program, program[1:], strict=False):
-        if not (before["kind"] in ("line", "arc") and after["kind"] in ("line", "arc")):
-            before.pop("blend", None)
     program[-1].pop("blend", None)
     return program
 
@@ -187,11 +185,16 @@ def faults(
             end = np.asarray(trajectory.at(report.end)[0])
             goal = move["goal"]
             pose = goal if goal.shape == (4, 4) else fk(goal[None])[0]
-            if goal.shape == (4,) and np.abs(end - goal).max() > 1e-9:
+            reached = fk(end[None])[0]
+            if blend > 0.0:
+                if np.linalg.norm(reached[:3, 3] - pose[:3, 3]) > blend:
+                    found.append(f"move {i} passes its end outside of the ball of its blend")
+            elif goal.ndim == 1 and np.abs(end - goal).max() > 1e-9:
                 found.append(f"move {i} ends at {end}, not at {goal}")
-            if np.abs(fk(end[None])[0] - pose).max() > 1e-6:
+            elif np.abs(reached - pose).max() > 1e-6:
                 found.append(f"move {i} ends at another pose")
-            start = pose
+            start, blend_before = pose, blend
+            continue
         elif move["kind"] == "wait":
             if abs(report.end - report.start - move["seconds"]) > 1e-9 or np.abs(qd[on]).max(initial=0.0) > 1e-9:
                 found.append(f"move {i} does not rest")

@@ -132,7 +132,20 @@ const LAYERS: &[(&str, &[&str])] = &[
     ),
     (
         "moves",
-        &["robot", "trajectory", "objective", "limits", "constraint", "obstacle", "task", "solver", "ik", "timing", "plan"],
+        &[
+            "robot",
+            "trajectory",
+            "objective",
+            "limits",
+            "constraint",
+            "obstacle",
+            "task",
+            "solver",
+            "ik",
+            "timing",
+            "plan",
+            "free_path",
+        ],
     ),
     (
         "tpbso",

@@ -101,6 +101,9 @@ mod timing {
     mod time_optimal;
     mod tolerance;
 }
+mod moves {
+    mod programs;
+}
 mod tpbso {
     mod wang_2019;
 }

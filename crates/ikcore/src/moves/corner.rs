@@ -24,11 +24,8 @@ const REVERSAL: f64 = -0.999;
 const INTERVALS: usize = 64;
 
 /// Nodes and weights of Gauss-Legendre quadrature on [0, 1].
-const NODES: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 5.0 / 18.0),
-    (0.5, 8.0 / 18.0),
-    (0.887_298_334_620_741_7, 5.0 / 18.0),
-];
+const NODES: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Steps of Newton's method on the length; its first guess is good to a percent of an interval.
 const STEPS: usize = 4;
@@ -55,14 +52,7 @@ impl Corner {
         let mut side = SIDE * radius;
         let controls = |side: f64| {
             let bent = 1.25 * side * side;
-            [
-                p0,
-                p0 + side * t0,
-                p0 + 2.0 * side * t0 + bent * k0,
-                p5 - 2.0 * side * t5 + bent * k5,
-                p5 - side * t5,
-                p5,
-            ]
+            [p0, p0 + side * t0, p0 + 2.0 * side * t0 + bent * k0, p5 - 2.0 * side * t5 + bent * k5, p5 - side * t5, p5]
         };
         let is_inside = |side: f64| controls(side)[1..5].iter().all(|point| (point - at_corner).norm() <= radius);
         while !is_inside(side) && side > SMALLEST_SIDE * radius {
@@ -124,7 +114,14 @@ fn length_between(controls: &Controls, from: f64, to: f64) -> f64 {
 
 fn bezier(controls: &Controls, u: f64) -> Vector3<f64> {
     let v = 1.0 - u;
-    let weights = [v.powi(5), 5.0 * u * v.powi(4), 10.0 * u * u * v.powi(3), 10.0 * u.powi(3) * v * v, 5.0 * u.powi(4) * v, u.powi(5)];
+    let weights = [
+        v.powi(5),
+        5.0 * u * v.powi(4),
+        10.0 * u * u * v.powi(3),
+        10.0 * u.powi(3) * v * v,
+        5.0 * u.powi(4) * v,
+        u.powi(5),
+    ];
     controls.iter().zip(weights).map(|(point, weight)| weight * point).sum()
 }
 

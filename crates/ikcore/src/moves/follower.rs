@@ -101,7 +101,13 @@ impl<'a> Follower<'a> {
         Ok(track)
     }
 
-    fn follow_piece(&mut self, path: &ToolPath, [begin, end]: [f64; 2], even: f64, track: &mut Track) -> Result<(), Lost> {
+    fn follow_piece(
+        &mut self,
+        path: &ToolPath,
+        [begin, end]: [f64; 2],
+        even: f64,
+        track: &mut Track,
+    ) -> Result<(), Lost> {
         let (mut at, mut step) = (begin, even);
         let smallest = even * 0.5_f64.powi(HALVINGS);
         while at < end {

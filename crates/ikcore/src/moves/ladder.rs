@@ -4,8 +4,9 @@
 //! start: a branch and whole turns, or also the self-motion of a redundant arm. A configuration from which a joint meets its limit on
 //! one of the paths of its block is no candidate. Of the sequences of candidates, the quickest is taken.
 
+use super::around::Around;
 use super::follower::{Follower, Lost, Track};
-use super::outline::Step;
+use super::outline::{Stage, Step};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
 use crate::error::Result;
@@ -64,12 +65,14 @@ pub(super) enum Dead {
 }
 
 /// What ends the following of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cause {
     /// No configuration nearby continues it.
     OutOfReach,
     /// A joint would have to go to this value.
     Limit { joint: usize, value: f64 },
+    /// Something is in the way, or what is to be kept is broken: which, with advice.
+    Blocked(String),
 }
 
 impl Rung {
@@ -79,9 +82,9 @@ impl Rung {
 }
 
 /// The blocks of a program.
-pub(super) fn blocks<'a>(steps: &'a [Step], moves: &'a [Move]) -> Vec<Block<'a>> {
+pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<Block<'a>> {
     let mut blocks = vec![Block { goal: None, paths: vec![] }];
-    for step in steps {
+    for Stage { step, .. } in stages {
         match step {
             Step::Joints(index) => {
                 if let MoveKind::Joints(goal) = &moves[*index].kind {
@@ -103,6 +106,7 @@ pub(super) fn blocks<'a>(steps: &'a [Step], moves: &'a [Move]) -> Vec<Block<'a>>
 pub(super) struct Ladder<'a> {
     robot: &'a Robot,
     limits: &'a ConstantLimits,
+    around: Around<'a>,
     /// Whether the tip's pose leaves the arm a self-motion.
     is_redundant: bool,
     follower: Follower<'a>,
@@ -112,7 +116,8 @@ pub(super) struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(robot: &'a Robot, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
+    pub fn new(around: Around<'a>, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
+        let robot = around.robot;
         let is_redundant = robot.dof() > 6;
         let bounds = if is_redundant {
             let [lower, upper] = limits.inset_positions(INSET);
@@ -121,7 +126,7 @@ impl<'a> Ladder<'a> {
             // Whole turns are chosen afterwards, so that one path serves all of them.
             Bounds::from_ranges((0..robot.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
         };
-        Self { robot, limits, is_redundant, follower: Follower::new(robot, bounds), each, evaluations: 0 }
+        Self { robot, limits, around, is_redundant, follower: Follower::new(robot, bounds), each, evaluations: 0 }
     }
 
     /// The follower, for refinement.
@@ -143,9 +148,9 @@ impl<'a> Ladder<'a> {
         for (i, block) in blocks.iter().enumerate() {
             let found = match (&block.goal, ladder.last()) {
                 (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
-                _ => self.tracks(start, &block.paths).map(|tracks| {
-                    vec![Rung { q: start.into(), tracks, cost: 0.0, before: 0 }]
-                }),
+                _ => self
+                    .tracks(start, &block.paths)
+                    .map(|tracks| vec![Rung { q: start.into(), tracks, cost: 0.0, before: 0 }]),
             };
             match found {
                 Ok(rungs) => ladder.push(rungs),
@@ -232,7 +237,9 @@ impl<'a> Ladder<'a> {
         let tracks = self.follow_all(candidate, paths)?;
         let mut rungs: Vec<Rung> = vec![];
         for rung in before {
-            let turns = self.turns(candidate, &tracks, rung.end()).map_err(|(joint, value)| self.beyond(&tracks, joint, value))?;
+            let turns = self
+                .turns(candidate, &tracks, rung.end())
+                .map_err(|(joint, value)| self.beyond(&tracks, joint, value))?;
             let moved = |values: &[f64]| values.iter().zip(&turns).map(|(q, turn)| q + turn).collect::<Point>();
             let q = moved(tracks.first().map_or(candidate, |track| track.row(0)));
             if rungs.iter().all(|known| largest_difference(&known.q, &q) > SAME) {
@@ -267,7 +274,27 @@ impl<'a> Ladder<'a> {
             let lost = |Lost { at }| Dead::Path { path: i, at, cause: Cause::OutOfReach };
             tracks.push(self.follower.follow(path, &from).map_err(lost)?);
         }
-        Ok(tracks)
+        match self.blocked(q, &tracks) {
+            None => Ok(tracks),
+            Some(dead) => Err(dead),
+        }
+    }
+
+    /// The first knot at which something is in the way.
+    fn blocked(&self, q: &[f64], tracks: &[Track]) -> Option<Dead> {
+        if self.around.is_free() {
+            return None;
+        }
+        if tracks.is_empty() {
+            return self.around.fault_at(q).map(|fault| Dead::Goal(fault.into()));
+        }
+        tracks.iter().enumerate().find_map(|(path, track)| {
+            let at = |(i, at): (usize, &f64)| {
+                let fault = self.around.fault_at(track.row(i))?;
+                Some(Dead::Path { path, at: *at, cause: Cause::Blocked(fault) })
+            };
+            track.knots.iter().enumerate().find_map(at)
+        })
     }
 
     /// Whole turns of each joint (rad) with which a block stays inside the limits, as near to `reference` at its start as possible; the
@@ -281,7 +308,8 @@ impl<'a> Ladder<'a> {
             };
             let [lower, upper] = [self.limits.lower[joint], self.limits.upper[joint]];
             let rounding = limit_rounding(lower, upper);
-            let (fewest, most) = (((lower - rounding - ends[0]) / period).ceil(), ((upper + rounding - ends[1]) / period).floor());
+            let (fewest, most) =
+                (((lower - rounding - ends[0]) / period).ceil(), ((upper + rounding - ends[1]) / period).floor());
             if fewest > most {
                 let value = self.excess(joint, ends).unwrap_or(ends[1]);
                 return Err((joint, value));
@@ -300,16 +328,19 @@ impl<'a> Ladder<'a> {
 
     /// Where on the paths a joint first leaves its limits.
     fn beyond(&self, tracks: &[Track], joint: usize, value: f64) -> Dead {
-        let cause = Cause::Limit { joint, value };
+        let cause = || Cause::Limit { joint, value };
         for (path, track) in tracks.iter().enumerate() {
             for (i, at) in track.knots.iter().enumerate() {
                 let q = track.row(i)[joint];
                 if self.excess(joint, [q, q]).is_some() {
-                    return Dead::Path { path, at: *at, cause };
+                    return Dead::Path { path, at: *at, cause: cause() };
                 }
             }
         }
-        Dead::Path { path: tracks.len().saturating_sub(1), at: tracks.last().map_or(0.0, |track| track.knots[track.knots.len() - 1]), cause }
+        match tracks.last() {
+            None => Dead::Goal("a joint would be outside its limits".into()),
+            Some(last) => Dead::Path { path: tracks.len() - 1, at: last.knots[last.knots.len() - 1], cause: cause() },
+        }
     }
 
     /// A rung after the quickest of those `before`.

@@ -18,50 +18,73 @@ pub(super) enum Step {
     Rest(usize, f64),
 }
 
+/// A step, and the radius (m) of the blend into the next one; 0: the arm stops.
+#[derive(Debug, Clone)]
+pub(super) struct Stage {
+    pub step: Step,
+    pub blend: f64,
+}
+
 /// The parts of a program that begins at the configuration `start`.
 ///
 /// # Errors
 /// [`Error::InvalidMove`].
-pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Vec<Step>> {
-    let mut steps = vec![];
+pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Vec<Stage>> {
+    let mut stages: Vec<Stage> = vec![];
     let mut legs: Vec<Leg> = vec![];
     let mut pose: Pose = robot.tip(start).into();
     for (i, each) in moves.iter().enumerate() {
-        let blends = each.blend > 0.0 && i + 1 < moves.len();
+        let blend = if i + 1 < moves.len() { each.blend } else { 0.0 };
+        let mut push = |step: Step, blend: f64| stages.push(Stage { step, blend });
         match &each.kind {
-            MoveKind::Wait(seconds) => steps.push(Step::Rest(i, *seconds)),
+            MoveKind::Wait(seconds) => push(Step::Rest(i, *seconds), 0.0),
             MoveKind::Joints(goal) => {
-                steps.push(Step::Joints(i));
+                push(Step::Joints(i), blend);
                 pose = match goal {
                     JointGoal::Configuration(q) => robot.tip(q).into(),
                     JointGoal::Pose(goal) => *goal,
                 };
             }
             MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, &pose)? {
-                None if blends || !legs.is_empty() => {
-                    let with_blend = if blends { i } else { i - 1 };
-                    let problem = format!(
-                        "its blend has no room, because {} ends where it begins: leave that out, or give no blend",
-                        each.named(i)
-                    );
-                    return Err(Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() });
+                None => {
+                    let before = i.checked_sub(1).filter(|before| moves[*before].blend > 0.0);
+                    if let Some(with_blend) = before.or((blend > 0.0).then_some(i)) {
+                        return Err(no_room(moves, with_blend, i));
+                    }
+                    push(Step::Rest(i, 0.0), 0.0);
                 }
-                None => steps.push(Step::Rest(i, 0.0)),
                 Some(leg) => {
                     pose = end_of(&leg, each);
+                    require_length(moves, i, &leg)?;
                     legs.push(leg);
+                    let goes_on = blend > 0.0 && moves[i + 1].is_cartesian();
+                    if !goes_on {
+                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), blend);
+                    }
                 }
             },
         }
-        let goes_on = blends && each.is_cartesian() && moves[i + 1].is_cartesian();
-        if blends && !goes_on {
-            return Err(beside_a_joint_move(moves, i));
-        }
-        if !legs.is_empty() && !goes_on {
-            steps.push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?));
+    }
+    Ok(stages)
+}
+
+/// Checks that a blend between a move of the tip and a joint move is no longer than the former.
+fn require_length(moves: &[Move], i: usize, leg: &Leg) -> Result<()> {
+    let beside_joints = |k: usize| moves.get(k).is_some_and(|each| matches!(each.kind, MoveKind::Joints(_)));
+    let before = i.checked_sub(1).filter(|before| beside_joints(*before));
+    let after = Some(i).filter(|i| beside_joints(i + 1));
+    for with_blend in [before, after].into_iter().flatten() {
+        let radius = moves[with_blend].blend;
+        if radius > 0.0 && leg.length_within(radius) > leg.length {
+            let problem = format!(
+                "its blend of {radius} m does not fit into {}, which is {} m long: make the blend smaller",
+                moves[i].named(i),
+                leg.length
+            );
+            return Err(Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() });
         }
     }
-    Ok(steps)
+    Ok(())
 }
 
 /// The pose at the end of a leg, as given.
@@ -73,10 +96,10 @@ fn end_of(leg: &Leg, each: &Move) -> Pose {
     }
 }
 
-fn beside_a_joint_move(moves: &[Move], i: usize) -> Error {
+fn no_room(moves: &[Move], with_blend: usize, still: usize) -> Error {
     let problem = format!(
-        "its blend leads from or into a joint move ({}), and blends join lines and arcs: give no blend",
-        moves[i + 1].named(i + 1)
+        "its blend has no room, because {} ends where it begins: leave that out, or give no blend",
+        moves[still].named(still)
     );
-    Error::InvalidMove { what: moves[i].named(i), problem: problem.into() }
+    Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() }
 }

@@ -1,29 +1,23 @@
 //! The call `plan_moves`.
 
+use super::around::Around;
 use super::assembly::Assembly;
 use super::ladder::{Block, Cause, Dead, Ladder, Rung, blocks};
+use super::moves_options::MovesOptions;
 use super::outline::outline;
-use super::program::{Move, check_program};
+use super::program::{JointGoal, Move, MoveKind, check_program};
 use super::tool_path::ToolPath;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolveOptions, solve_all};
-use crate::limits::{Limits, StartSlack};
+use crate::limits::StartSlack;
 use crate::message::{Message, message};
+use crate::obstacle::Clearance;
 use crate::plan::{Cost, Plan};
 use crate::robot::{Robot, limit_rounding};
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
 use crate::wording::number;
-
-/// Options of [`plan_moves`].
-#[derive(Debug, Clone, Default)]
-pub struct MovesOptions {
-    /// Limits to keep. `None` means the robot's.
-    pub limits: Option<Limits>,
-    /// Seed of the random draws; the same seed gives the same bits.
-    pub seed: u64,
-}
 
 /// Length past the place where a path is lost (m), at which its pose is solved for to learn why.
 const BEYOND: f64 = 1e-3;
@@ -50,31 +44,62 @@ pub fn plan_moves(
     robot.check("start_q", start)?;
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.require_accelerations(METHOD)?;
-    let start = limits.position_limits(robot)?.admit_start(Some(robot), "start_q", start, &StartSlack::NONE)?.q;
-    let steps = outline(robot, moves, &start)?;
-    let blocks = blocks(&steps, moves);
-    let each = SolveOptions { limits: options.limits.clone(), seed: options.seed, ..SolveOptions::default() };
-    let mut ladder = Ladder::new(robot, &limits, each.clone());
+    options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
+    let space = options.surroundings.clear_space(robot)?;
+    let around = Around { robot, space: space.as_ref(), keeps: &options.keeps };
+    let inside = limits.position_limits(robot)?;
+    let admitted = |what: &str, q: &[f64]| -> Result<Vec<f64>> {
+        let q = inside.admit_start(Some(robot), what, q, &StartSlack::NONE)?.q;
+        around.refuse(what, &q)?;
+        Ok(q)
+    };
+    let start = admitted("start_q", start)?;
+    let moves = &with_goals(moves, admitted)?;
+    let stages = outline(robot, moves, &start)?;
+    let blocks = blocks(&stages, moves);
+    let each = SolveOptions {
+        limits: Some(inside),
+        surroundings: options.surroundings.clone(),
+        seed: options.seed,
+        ..SolveOptions::default()
+    };
+    let mut ladder = Ladder::new(around, &limits, each.clone());
     let climber = Climber { robot, limits: &limits, moves, blocks: &blocks, each };
     let rungs = match ladder.climb(&blocks, &start, monitor)? {
         Ok(rungs) => rungs,
         Err((block, dead)) => return Err(climber.no_way(block, dead, monitor)?),
     };
     let paths = climber.refined(&mut ladder, &rungs, monitor)?;
-    let mut assembly = Assembly::new(robot, &limits, moves, &start);
-    assembly.add_all(&steps, &rungs, paths)?;
+    let mut assembly = Assembly::new(around, &limits, moves, options, &start);
+    assembly.add_all(&stages, &rungs, paths, monitor)?;
     let (trajectory, reports) = assembly.finish()?;
     let duration = trajectory.duration();
     let violations = limits.violations(&trajectory);
     let status = if violations.is_empty() { Status::Solved } else { Status::Stalled };
-    Ok(Plan {
+    let mut plan = Plan {
         violations,
         status,
         moves: reports,
+        clearance: space.as_ref().map(|space| Clearance::at_least(space.margin())),
+        surroundings: space.as_ref().map(|space| space.surroundings()),
         evaluations: ladder.evaluations,
-        elapsed: stopwatch.elapsed(),
         ..Plan::of(trajectory, Cost::Time, duration)
-    })
+    };
+    if plan.note_kept(robot, &options.keeps)?.is_some() {
+        plan.status = Status::Stalled;
+    }
+    plan.elapsed = stopwatch.elapsed();
+    Ok(plan)
+}
+
+/// The moves with the configurations that the gate `admitted`.
+fn with_goals(moves: &[Move], admitted: impl Fn(&str, &[f64]) -> Result<Vec<f64>>) -> Result<Vec<Move>> {
+    let with_goal = |(i, each): (usize, &Move)| {
+        let MoveKind::Joints(JointGoal::Configuration(q)) = &each.kind else { return Ok(each.clone()) };
+        let q = admitted(&format!("joint positions of {}", each.named(i)), q)?;
+        Ok(Move { kind: MoveKind::Joints(JointGoal::Configuration(q)), ..each.clone() })
+    };
+    moves.iter().enumerate().map(with_goal).collect()
 }
 
 /// What the search for configurations is about.
@@ -144,6 +169,7 @@ impl Climber<'_> {
                 )
                 .into()
             }
+            Cause::Blocked(fault) => format!("{} m along it, {fault}", number(along)).into(),
             Cause::OutOfReach => {
                 let pose = path.pose((at + BEYOND).min(path.length()));
                 let options = AllOptions { each: self.each.clone(), ..AllOptions::default() };
@@ -165,8 +191,10 @@ impl Climber<'_> {
 
     fn advice(&self, block: usize) -> &'static str {
         match self.blocks[block].goal {
-            Some((_, super::program::JointGoal::Pose(_))) => "divide it by a joint move, or move it",
-            Some(_) => "give the joint move before it a pose in place of a configuration, so that the planner can choose one",
+            Some((_, JointGoal::Pose(_))) => "divide it by a joint move, or move it",
+            Some(_) => {
+                "give the joint move before it a pose in place of a configuration, so that the planner can choose one"
+            }
             None => "begin with a joint move to a pose, so that the planner can choose the configuration",
         }
     }

@@ -118,8 +118,10 @@ pub(super) fn check_program(robot: &Robot, moves: &[Move]) -> Result<()> {
         each.check(&each.named(i), robot)?;
         if let (true, Some(Move { kind: MoveKind::Wait(_), .. })) = (each.blend > 0.0, moves.get(i + 1)) {
             let next = moves[i + 1].named(i + 1);
-            let problem =
-                format!("its blend of {} m leads into {next}, a wait, before which the arm stops: give no blend", each.blend);
+            let problem = format!(
+                "its blend of {} m leads into {next}, a wait, before which the arm stops: give no blend",
+                each.blend
+            );
             return Err(Error::InvalidMove { what: each.named(i), problem: problem.into() });
         }
     }

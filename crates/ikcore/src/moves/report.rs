@@ -3,8 +3,11 @@
 use super::timing::PathTime;
 use super::tool_path::ToolPath;
 use crate::error::Result;
+use crate::math::Columns;
 use crate::math::polynomial::evaluate;
+use crate::math::so3::norm;
 use crate::plan::SpeedBound;
+use crate::robot::Robot;
 use crate::timing::ConstantLimits;
 use crate::trajectory::{Coefficients, Trajectory};
 
@@ -82,25 +85,29 @@ fn tightest<'a>(motion: &Trajectory, t: f64, limits: &'a ConstantLimits) -> (&'a
 
 /// Third derivative of a polynomial at `s`.
 fn jerk(polynomial: &Coefficients, s: f64) -> f64 {
-    polynomial.iter().enumerate().skip(3).rev().fold(0.0, |sum, (power, c)| {
-        sum * s + (power * (power - 1) * (power - 2)) as f64 * c
-    })
+    polynomial
+        .iter()
+        .enumerate()
+        .skip(3)
+        .rev()
+        .fold(0.0, |sum, (power, c)| sum * s + (power * (power - 1) * (power - 2)) as f64 * c)
 }
 
-/// Largest speed of the tip along a joint move (m/s).
+/// Largest speed of the tip along a joint move (m/s), between these times of a motion (s).
 ///
 /// # Errors
 /// None in practice: the joints are those of the robot.
-pub(super) fn tip_speed(robot: &crate::robot::Robot, motion: &Trajectory) -> Result<f64> {
+pub(super) fn tip_speed(robot: &Robot, motion: &Trajectory, [start, end]: [f64; 2]) -> Result<f64> {
     let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
-    let mut columns = crate::math::Columns::default();
+    let mut columns = Columns::default();
     let mut largest: f64 = 0.0;
     for ends in motion.knots().windows(2) {
-        for t in [ends[0], 0.5 * (ends[0] + ends[1])] {
+        for t in [ends[0], 0.5 * (ends[0] + ends[1])].into_iter().filter(|t| start <= *t && *t <= end) {
             motion.at(t, &mut q, &mut qd, &mut qdd)?;
             robot.tip_and_jacobian(&q, &mut columns);
-            let speed = [0, 1, 2].map(|k| qd.iter().zip(columns.iter()).map(|(qd, column)| qd * column[k]).sum::<f64>());
-            largest = largest.max(crate::math::so3::norm(&speed));
+            let speed =
+                [0, 1, 2].map(|k| qd.iter().zip(columns.iter()).map(|(qd, column)| qd * column[k]).sum::<f64>());
+            largest = largest.max(norm(&speed));
         }
     }
     Ok(largest)

@@ -91,7 +91,9 @@ impl ToolPath {
             require_room(next, [next_cut, 0.0], radius, moves, &wrong)?;
             let left = (leg.length - cut).max(entered);
             let corner = Corner::between(leg, left, next, next_cut, radius).ok_or_else(|| {
-                wrong(format!("its blend of {radius} m cannot round a corner at which the tip turns back: give no blend"))
+                wrong(format!(
+                    "its blend of {radius} m cannot round a corner at which the tip turns back: give no blend"
+                ))
             })?;
             push_leg(&mut pieces, leg, entered, left);
             let speed = leg.speed.zip(next.speed).map(|(before, after)| before.max(after));

@@ -28,9 +28,9 @@ mod several_tips;
 pub use crate::along_path::TipPath;
 pub use crate::moves::{JointGoal, Move, MoveKind, MovesOptions, plan_moves};
 pub use crate::plan::{
-    AlongPathMethod, AlongPathOptions, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact, MoveReport, SpeedBound,
-    LineFrame, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod, PointToPointOptions,
-    StraightLine, Tpbso,
+    AlongPathMethod, AlongPathOptions, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact,
+    LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod,
+    PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{
     ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,

@@ -130,7 +130,7 @@ impl JointPath {
     }
 
     /// Position of one joint and its first and second derivative by the path parameter, at `from` within a piece.
-    pub(super) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
+    pub(crate) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
         [
             c0 + from * (c1 + from * (c2 + from * c3)),

@@ -43,7 +43,9 @@ impl PyMove {
         let mut rest = vec![];
         let kind = match kind {
             MoveKind::Joints(JointGoal::Configuration(q)) => format!("Joints({}", list_text(q)),
-            MoveKind::Joints(JointGoal::Pose(pose)) => format!("Joints(pose at {}", place(pose.translation.vector.as_ref())),
+            MoveKind::Joints(JointGoal::Pose(pose)) => {
+                format!("Joints(pose at {}", place(pose.translation.vector.as_ref()))
+            }
             MoveKind::Line { pose, speed } => {
                 rest.push(format!("speed={}", speed.text()));
                 format!("Line(pose at {}", place(pose.translation.vector.as_ref()))
@@ -109,7 +111,9 @@ impl PyJoints {
             [4, 4] => JointGoal::Pose(rigid_rows("q_or_pose", numbers.as_slice()?)?),
             shape => {
                 let got = shape_text(shape);
-                return Err(invalid(format!("q_or_pose: expected joint positions (n,) or a pose (4, 4), got shape {got}")));
+                return Err(invalid(format!(
+                    "q_or_pose: expected joint positions (n,) or a pose (4, 4), got shape {got}"
+                )));
             }
         };
         Ok(made(MoveKind::Joints(goal), blend, name, Self))
@@ -290,13 +294,14 @@ fn speed_of(each: &Move) -> Option<f64> {
 
 /// Reads a sequence of moves.
 pub fn read_moves(value: &Bound<'_, PyAny>) -> PyResult<Vec<Move>> {
-    let wrong = || invalid(format!("moves must be a sequence of moves, such as beetle_ik.moves.Line, got {}", summary(value)));
+    let wrong =
+        || invalid(format!("moves must be a sequence of moves, such as beetle_ik.moves.Line, got {}", summary(value)));
     let mut moves = vec![];
     for (i, each) in value.try_iter().map_err(|_| wrong())?.enumerate() {
         let each = each?;
-        let given = each.cast::<PyMove>().map_err(|_| {
-            invalid(format!("moves[{i}] must be one of beetle_ik.moves, got {}", summary(&each)))
-        })?;
+        let given = each
+            .cast::<PyMove>()
+            .map_err(|_| invalid(format!("moves[{i}] must be one of beetle_ik.moves, got {}", summary(&each))))?;
         moves.push(given.get().core.clone());
     }
     Ok(moves)
