@@ -47,7 +47,7 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
     if jerk:
         limits["jerk"] = np.full(robot.dof, JERK)
     made = 0
-    for seed in range(4):
+    for seed in range(5):
         random = np.random.default_rng(seed)
         start = STARTS[name] + random.uniform(-0.2, 0.2, robot.dof)
         program = draw(robot, start, 6, random)
@@ -131,6 +131,13 @@ def test_blends_keep_the_speed_through_a_corner() -> None:
     assert durations[0] < durations[1]
 
 
+def test_the_arm_stops_where_a_blend_would_turn_back() -> None:
+    back = [{"kind": "line", "pose": shifted(y=0.1), "speed": 0.1, "blend": 0.02}, {"kind": "line", "pose": shifted()}]
+    assert planned(back) == []
+    plan = bik.plan_moves(UR5, moves_of(back), start_q=HOME, limits=LIMITS)
+    assert np.abs(plan.trajectory.at(plan.moves[0].end)[1]).max() < 1e-9
+
+
 @pytest.mark.parametrize("yaw", [np.pi / 2, np.pi, -np.pi / 2])
 def test_a_turn_on_the_spot_counts_a_tenth_of_a_metre(yaw: float) -> None:
     there, turned = pose(0.4, -0.1, 0.3), pose(0.4, -0.1, 0.3, yaw)
@@ -190,12 +197,8 @@ WRONG: list[tuple[list[Any], str]] = [
         "move 0: its blend has no room, because move 1 ends where it begins: leave that out, or give no blend",
     ),
     (
-        [Line(shifted(y=0.1), blend=0.01), Line(shifted())],
-        "move 0: its blend of 0.01 m cannot round a corner at which the tip turns back: give no blend",
-    ),
-    (
         [Line(shifted(y=0.1), blend=0.06, name="a"), Line(shifted(y=0.1, z=0.1), blend=0.06, name="b"), Line(shifted())],
-        "move 1 'b': its blend of 0.06 m, with the blend at its other end, does not fit into move 1 'b', which is 0.1 m long: "
+        "move 1 'b': its blend of 0.06 m, with the blend at its other end, does not fit into move 1 'b', which is 0.1000 m long: "
         "make the blend smaller",
     ),
 ]
@@ -210,7 +213,7 @@ def test_wrong_moves_are_named(program: list[Any], message: str) -> None:
 
 def test_a_line_out_of_reach_says_where() -> None:
     with pytest.raises(Invalid, match="^move 0 'out' cannot be reached: 0.* m along it, no solution") as caught:
-        bik.plan_moves(UR5, [Line(shifted(x=0.9), name="out")], start_q=HOME, limits=LIMITS)
+        bik.plan_moves(UR5, [Line(shifted(x=-0.9), name="out")], start_q=HOME, limits=LIMITS)
     assert "out of reach" in str(caught.value)
 
 
@@ -244,7 +247,7 @@ def test_what_is_to_be_kept_holds_or_is_refused() -> None:
     across = [Line(shifted(y=0.1), speed=0.1, name="across")]
     plan = bik.plan_moves(UR5, across, start_q=HOME, limits=LIMITS, keep=flat)
     assert plan.success
-    assert plan.kept[0][1][2] < 1e-5
+    assert plan.kept[0][1][2] < 2e-4
     with pytest.raises(Invalid, match="a motion along move 0 'down' was not found: .* to be kept"):
         bik.plan_moves(UR5, [Line(shifted(z=-0.1), name="down")], start_q=HOME, limits=LIMITS, keep=flat)
 

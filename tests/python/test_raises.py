@@ -241,7 +241,7 @@ ROWS: list[Row] = [
     ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [LINE_UP], start_q=UR5_Q * np.nan, limits=RATED), "start_q must be finite, but joint 'shoulder_pan_joint' is NaN"),
     ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(HERE, speed=0.0, name="up")], start_q=UR5_Q, limits=RATED), "speed of move 0 'up' must be positive and finite, got 0"),
     ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Arc(raised(0.05)[:3, 3], raised(0.1))], start_q=UR5_Q, limits=RATED), "move 0: the three points of the arc are on a line: move via off it, or give a line"),
-    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(raised(0.05), blend=0.06), api.moves.Line(HERE)], start_q=UR5_Q, limits=RATED), "move 0: its blend of 0.06 m does not fit into move 0, which is 0.05 m long: make the blend smaller"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(raised(0.05), blend=0.06), api.moves.Line(HERE)], start_q=UR5_Q, limits=RATED), "move 0: its blend of 0.06 m does not fit into move 0, which is 0.05000 m long: make the blend smaller"),
     ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(raised(0.05), blend=0.01), api.moves.Wait(1.0)], start_q=UR5_Q, limits=RATED), "move 0: its blend of 0.01 m leads into move 1, a wait, before which the arm stops: give no blend"),
     ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Joints(UR5_Q[:2])], start_q=UR5_Q, limits=RATED), "joint positions of move 0 of robot 'ur5e': expected 6 joints, got 2"),
     ("plan_moves", Invalid, lambda at: api.plan_moves(BARE, [LINE_UP], start_q=Q, limits=RATED, obstacles=[BALL]), f"robot 'iiwa14' {NO_CAPSULES}"),

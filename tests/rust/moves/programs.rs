@@ -55,7 +55,9 @@ fn corners_of_lines_stay_inside_their_balls() {
     let mut rng = rng::stream(7, 0);
     for case in 0..12 {
         let round = case % 2 == 0;
-        let mut draw = |size: f64| if round { size * (rng.uniform_in(-2.0, 2.0)).round() / 2.0 } else { rng.uniform_in(-size, size) };
+        let mut draw = |size: f64| {
+            if round { size * (rng.uniform_in(-2.0, 2.0)).round() / 2.0 } else { rng.uniform_in(-size, size) }
+        };
         let first = moved(&start, [0.05 + draw(0.02), draw(0.1), draw(0.05)]);
         let second = moved(&first, [draw(0.05), 0.08 + draw(0.05), draw(0.05)]);
         let radius = [0.01, 0.02, 0.004][case % 3];
@@ -73,7 +75,8 @@ fn corners_of_lines_stay_inside_their_balls() {
             let t = plan.trajectory.duration() * f64::from(i) / 2000.0;
             let [q, _] = at(&plan, t);
             let tip = Vector3::from(arm.tip_position(&q));
-            let nearest = off(&tip, &start.translation.vector, &corner).min(off(&tip, &corner, &second.translation.vector));
+            let nearest =
+                off(&tip, &start.translation.vector, &corner).min(off(&tip, &corner, &second.translation.vector));
             let from_corner = (tip - corner).norm();
             assert!(nearest < 1e-5 || from_corner <= radius * (1.0 + 1e-9), "case {case}: {nearest} m off at {t} s");
             inside += usize::from(from_corner < radius);
@@ -114,8 +117,7 @@ fn orientations_turn_uniformly_on_lines_and_arcs() {
     let turn = Rotation3::new(Vector3::new(0.2, -0.1, 0.4));
     let end = Pose::from_parts(moved(&start, [0.0, 0.1, -0.1]).translation, turn * start.rotation);
     let via = moved(&start, [0.03, 0.08, -0.02]).translation.vector.into();
-    for kind in
-        [MoveKind::Line { pose: end, speed: None }, MoveKind::Arc { via, pose: end, angle: None, speed: None }]
+    for kind in [MoveKind::Line { pose: end, speed: None }, MoveKind::Arc { via, pose: end, angle: None, speed: None }]
     {
         let plan = planned(&arm, &[Move::new(kind)], None).unwrap();
         let (mut length, mut way) = (vec![0.0], 0.0);

@@ -41,14 +41,10 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// The corner from `before`, where it is left at `from`, to `after`, which is entered at `to`; both cut it at `radius`. `None` for a
-    /// reversal.
-    pub fn between(before: &Leg, from: f64, after: &Leg, to: f64, radius: f64) -> Option<Self> {
+    /// The corner from `before`, where it is left at `from`, to `after`, which is entered at `to`; both cut it at `radius`.
+    pub fn between(before: &Leg, from: f64, after: &Leg, to: f64, radius: f64) -> Self {
         let ([p0, t0, k0], [p5, t5, k5]) = (before.at(from), after.at(to));
-        let [at_corner, incoming, _] = before.at(before.length);
-        if incoming.dot(&after.at(0.0)[1]) < REVERSAL {
-            return None;
-        }
+        let [at_corner, ..] = before.at(before.length);
         let mut side = SIDE * radius;
         let controls = |side: f64| {
             let bent = 1.25 * side * side;
@@ -65,7 +61,12 @@ impl Corner {
         let [begin, end] = [0.2 * whole * before.rate, 0.2 * whole * after.rate];
         let vectors = [first, first + begin, first + 2.0 * begin, last - 2.0 * end, last - end, last];
         let turned = (before.orientation(before.length), vectors);
-        Some(Self { position, turned, lengths })
+        Self { position, turned, lengths }
+    }
+
+    /// Whether the tip turns back between two legs.
+    pub fn turns_back(before: &Leg, after: &Leg) -> bool {
+        before.at(before.length)[1].dot(&after.at(0.0)[1]) < REVERSAL
     }
 
     /// Length of the curve (m).

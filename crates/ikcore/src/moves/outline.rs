@@ -1,11 +1,13 @@
 //! What a program asks of the tip, before configurations are chosen.
 
+use super::corner::Corner;
 use super::leg::Leg;
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
 use crate::error::{Error, Result};
 use crate::math::Pose;
 use crate::robot::Robot;
+use crate::wording::number;
 
 /// A part of a program, from rest to rest.
 #[derive(Debug, Clone)]
@@ -56,6 +58,10 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Ve
                 Some(leg) => {
                     pose = end_of(&leg, each);
                     require_length(moves, i, &leg)?;
+                    // No smooth curve leads back: the arm stops there.
+                    if legs.last().is_some_and(|before| Corner::turns_back(before, &leg)) {
+                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), 0.0);
+                    }
                     legs.push(leg);
                     let goes_on = blend > 0.0 && moves[i + 1].is_cartesian();
                     if !goes_on {
@@ -79,7 +85,7 @@ fn require_length(moves: &[Move], i: usize, leg: &Leg) -> Result<()> {
             let problem = format!(
                 "its blend of {radius} m does not fit into {}, which is {} m long: make the blend smaller",
                 moves[i].named(i),
-                leg.length
+                number(leg.length)
             );
             return Err(Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() });
         }

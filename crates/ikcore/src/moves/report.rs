@@ -14,10 +14,13 @@ use crate::trajectory::{Coefficients, Trajectory};
 /// Shortfall of the speed, as a fraction of the one asked for, that counts as none.
 const SHORT: f64 = 1e-3;
 
-/// Largest speed of the tip on move `index` of a path (m/s).
+/// Largest speed of the tip on move `index` of a path (m/s), between its corners.
 pub(super) fn speed_on(path: &ToolPath, index: usize, times: &[PathTime]) -> f64 {
-    let on_it = times.iter().filter(|at| path.pieces[path.piece_at(at.s)].index == index);
-    on_it.map(|at| at.rate).fold(0.0, f64::max)
+    let is_on_it = |at: &&PathTime| {
+        let piece = &path.pieces[path.piece_at(at.s)];
+        piece.index == index && !piece.is_corner()
+    };
+    times.iter().filter(is_on_it).map(|at| at.rate).fold(0.0, f64::max)
 }
 
 /// What keeps the tip below the speed asked for on move `index`, between its corners.

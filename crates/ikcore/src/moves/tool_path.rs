@@ -5,6 +5,7 @@ use super::leg::Leg;
 use super::program::Move;
 use crate::error::{Error, Result};
 use crate::math::{Frame, Pose};
+use crate::wording::number;
 
 /// Excess of blends over the length of a move that counts as rounding, relative to the length.
 const ROUNDING: f64 = 1e-9;
@@ -90,11 +91,7 @@ impl ToolPath {
             require_room(leg, [entered, cut], radius, moves, &wrong)?;
             require_room(next, [next_cut, 0.0], radius, moves, &wrong)?;
             let left = (leg.length - cut).max(entered);
-            let corner = Corner::between(leg, left, next, next_cut, radius).ok_or_else(|| {
-                wrong(format!(
-                    "its blend of {radius} m cannot round a corner at which the tip turns back: give no blend"
-                ))
-            })?;
+            let corner = Corner::between(leg, left, next, next_cut, radius);
             push_leg(&mut pieces, leg, entered, left);
             let speed = leg.speed.zip(next.speed).map(|(before, after)| before.max(after));
             pieces.push(ToolPiece { index: leg.index, length: corner.length(), speed, course: Course::Corner(corner) });
@@ -157,6 +154,7 @@ fn require_room(
     }
     let other = if before > 0.0 && after > 0.0 { ", with the blend at its other end," } else { "" };
     Err(wrong(format!(
-        "its blend of {radius} m{other} does not fit into {named}, which is {length} m long: make the blend smaller"
+        "its blend of {radius} m{other} does not fit into {named}, which is {} m long: make the blend smaller",
+        number(length)
     )))
 }

@@ -11,7 +11,7 @@ pub struct MoveReport {
     pub start: f64,
     /// When it ends (s).
     pub end: f64,
-    /// Largest speed of the tip on it (m/s). A turn on the spot counts 0.1 m for each radian.
+    /// Largest speed of the tip on it (m/s), between its blends. A turn on the spot counts 0.1 m for each radian.
     pub speed: f64,
     /// What kept the tip below the speed asked for, between its blends, and when; empty where it had that speed, and where none is asked
     /// for.

@@ -34,7 +34,7 @@ impl PyMoveReport {
         self.0.end
     }
 
-    /// Largest speed of the tip on it (m/s); of a turn on the spot 0.1 m for each radian.
+    /// Largest speed of the tip on it (m/s), between its blends; of a turn on the spot 0.1 m for each radian.
     #[getter]
     fn speed(&self) -> f64 {
         self.0.speed
