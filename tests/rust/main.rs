@@ -97,6 +97,7 @@ mod task {
     mod region;
 }
 mod timing {
+    mod jerk_limits;
     mod retime;
     mod time_optimal;
     mod tolerance;

@@ -65,18 +65,18 @@ impl Plan {
         })
     }
 
-    /// Checks that the motion keeps the margin. `smoothed` for jerk limits, it leaves the path a little.
-    fn certify(&mut self, robot: &Robot, smoothed: bool) -> Result<()> {
+    /// Checks that the motion keeps the margin. Timed for jerk limits, it leaves the path a little: `is_rounded`.
+    fn certify(&mut self, robot: &Robot, is_rounded: bool) -> Result<()> {
         let space = self.surroundings.as_ref().map_or(Ok(None), |surroundings| surroundings.clear_space(robot))?;
         let Some(space) = space else { return Ok(()) };
         let margin = space.margin();
         if let Err(near) = certify(&mut ClearanceSweep::new(space.scene()), &self.trajectory, margin) {
             let violation = too_near(&near.contact, margin);
             let problem =
-                format!("smoothed for jerk limits, the motion comes too near: {violation}; plan with them instead");
+                format!("timed for jerk limits, the motion comes too near: {violation}; plan with them instead");
             return Err(Error::Infeasible { problem: problem.into() });
         }
-        if smoothed {
+        if is_rounded {
             // Found when it is asked for.
             self.clearance = Some(Clearance::at_least(margin));
         }

@@ -14,7 +14,7 @@
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
-//! | `jerk` | smoothing that keeps jerk limits |
+//! | `jerk_limited` | the fastest timing within jerk limits |
 //! | `line_timing` | the fastest smooth timing of straight lines |
 //! | `quintic` | the quintic from rest to rest |
 //! | `time_scaling` | scaling of a whole motion in time, to its limits |
@@ -24,7 +24,7 @@ mod compose;
 mod constant_limits;
 mod derivatives;
 mod grid;
-mod jerk;
+mod jerk_limited;
 mod joint_path;
 mod least_bending;
 mod line_timing;

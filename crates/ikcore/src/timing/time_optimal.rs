@@ -3,7 +3,7 @@
 use super::compose::compose;
 use super::constant_limits::ConstantLimits;
 use super::grid::{check_gridpoints, cut};
-use super::jerk::smooth;
+use super::jerk_limited;
 use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
@@ -26,8 +26,8 @@ pub struct TimingOptions {
 /// Number of segments before refinement.
 const FIRST_SEGMENTS: usize = 100;
 
-/// Number of segments if the result is smoothed: smoothing costs more speed than a coarse grid.
-const SEGMENTS_TO_SMOOTH: usize = 300;
+/// Number of segments if jerk limits are to be kept: the profile then only says where the motion takes its time.
+const SEGMENTS_FOR_JERK: usize = 100;
 
 /// Returns the fastest motion along `path` within `limits`.
 ///
@@ -52,7 +52,7 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
             check_gridpoints(gridpoints)?;
             fastest(cut(path, gridpoints - 1))?
         }
-        None if limits.limit_jerk() => fastest(cut(path, SEGMENTS_TO_SMOOTH))?,
+        None if limits.limit_jerk() => fastest(cut(path, SEGMENTS_FOR_JERK))?,
         None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
     };
     if !limits.limit_jerk() {
@@ -62,7 +62,7 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
         let problem = "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();
         return Err(Error::Infeasible { problem });
     }
-    smooth(path, &profile, limits)
+    jerk_limited::fastest(path, &profile, limits)
 }
 
 /// The fastest motion along `paths`, each from rest to rest, one after the other.

@@ -5,7 +5,7 @@
 
 use super::constant_limits::ConstantLimits;
 use super::joint_path::JointPath;
-use super::time_optimal::{TimingOptions, time, time_optimal};
+use super::time_optimal::{TimingOptions, coarse_duration, time, time_optimal};
 use super::tube::Tube;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
@@ -14,6 +14,10 @@ use crate::trajectory::Trajectory;
 const WIDTH_RATIO: f64 = std::f64::consts::SQRT_2;
 /// Number of widths tried, which ends at 1/1000 of the tolerance.
 const WIDTHS: i32 = 21;
+
+/// Segments of a rough timing without jerk limits, and how much of its duration a motion with them surely takes.
+const SEGMENTS: usize = 300;
+const SURE: f64 = 0.97;
 
 /// Returns a fast motion within `limits` that stays within `tolerance` (rad, m; one number per joint) of `path`, at the
 /// same path parameter, from its start to its end. Zero tolerances: the motion is on the path.
@@ -28,33 +32,70 @@ pub fn time_optimal_within(
     options: &TimingOptions,
 ) -> Result<Trajectory> {
     check(path, tolerance)?;
-    let mut best = time_optimal(path, limits, options);
-    if matches!(best, Err(Error::Interrupted)) || tolerance.contains(&0.0) {
-        return best;
+    let mut fastest = Fastest { limits, options, best: None };
+    if !tolerance.contains(&0.0) {
+        fastest.try_tubes(path, tolerance)?;
     }
-    let tube = Tube::new(path, limits);
-    let widest = tolerance.iter().map(|tolerance| WIDTH_RATIO.powf(tolerance.log(WIDTH_RATIO).floor()));
-    let (widest, mut pieces) = (widest.collect::<Vec<f64>>(), 1);
-    for width in 0..WIDTHS {
-        let tolerance: Vec<f64> = widest.iter().map(|widest| widest * WIDTH_RATIO.powi(-width)).collect();
-        let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else {
-            if width == 0 || pieces > 1 {
-                break;
-            } else {
+    match fastest.best {
+        Some(best) if slower(path, limits, &best)? => Ok(best),
+        Some(best) => Ok(time_optimal(path, limits, options)
+            .ok()
+            .filter(|exact| exact.duration() < best.duration())
+            .unwrap_or(best)),
+        None => time_optimal(path, limits, options),
+    }
+}
+
+/// The fastest motion so far.
+struct Fastest<'a> {
+    limits: &'a ConstantLimits,
+    options: &'a TimingOptions,
+    best: Option<Trajectory>,
+}
+
+impl Fastest<'_> {
+    /// Tries the smoothest paths in tubes of the tolerance, and of narrower ones.
+    fn try_tubes(&mut self, path: &JointPath, tolerance: &[f64]) -> Result<()> {
+        let tube = Tube::new(path, self.limits);
+        let widest = tolerance.iter().map(|tolerance| WIDTH_RATIO.powf(tolerance.log(WIDTH_RATIO).floor()));
+        let (widest, mut pieces) = (widest.collect::<Vec<f64>>(), 1);
+        for width in 0..WIDTHS {
+            let tolerance: Vec<f64> = widest.iter().map(|widest| widest * WIDTH_RATIO.powi(-width)).collect();
+            let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else {
+                if width == 0 || pieces > 1 {
+                    break;
+                }
                 continue;
             };
-        };
-        pieces = needed;
-        if limits.require_for(&smooth).is_err() {
-            continue;
+            pieces = needed;
+            self.try_path(&smooth)?;
         }
-        if let Ok(motion) = time(&smooth, limits, options)
-            && best.as_ref().map_or(true, |best| motion.duration() < best.duration())
-        {
-            best = Ok(motion);
-        }
+        Ok(())
     }
-    best
+
+    fn try_path(&mut self, path: &JointPath) -> Result<()> {
+        if self.limits.require_for(path).is_err() {
+            return Ok(());
+        }
+        if let Some(best) = &self.best
+            && slower(path, self.limits, best)?
+        {
+            return Ok(());
+        }
+        match time(path, self.limits, self.options) {
+            Ok(motion) if self.best.as_ref().is_none_or(|best| motion.duration() < best.duration()) => {
+                self.best = Some(motion);
+            }
+            Err(Error::Interrupted) => return Err(Error::Interrupted),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// Whether even the fastest motion along a path without jerk limits takes longer than `best`.
+fn slower(path: &JointPath, limits: &ConstantLimits, best: &Trajectory) -> Result<bool> {
+    Ok(limits.limit_jerk() && SURE * coarse_duration(path, limits, SEGMENTS)? > best.duration())
 }
 
 fn check(path: &JointPath, tolerance: &[f64]) -> Result<()> {

@@ -45,7 +45,8 @@ use crate::wording::said;
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
 ///     accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it
-///         (rad). It determines how many points of the path the motion passes. None: a thousandth of the path's extent,
+///         (rad). It determines how many points of the path the motion passes, and how far it may round corners. None: a
+///         thousandth of the path's extent,
 ///         plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
 ///         has tolerances, the accuracy is part of them and must not exceed the smallest.
 ///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a

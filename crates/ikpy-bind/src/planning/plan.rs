@@ -174,7 +174,7 @@ impl PyPlan {
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
     ///     InfeasibleError: a plan with violations, one of `plan_moves`, a path outside the position limits, jerk limits on a motion whose
-    ///         acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
+    ///         acceleration jumps, or a margin, or what is to be kept on the way, that the motion timed for jerk limits does not keep.
     ///     UnsupportedLimit: limits that vary in time.
     fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let robot = self.robot.bind(py);

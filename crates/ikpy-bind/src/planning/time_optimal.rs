@@ -15,8 +15,9 @@ use crate::trajectory::{PyTrajectory, names};
 /// Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 ///
 /// The method is reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of
-/// only at grid points: velocity and acceleration limits hold at every instant, on any grid. Jerk limits are kept by
-/// smoothing the motion in time: all limits hold, but the result is then slower than the optimum.
+/// only at grid points: velocity and acceleration limits hold at every instant, on any grid. With jerk limits the squared rate
+/// of a smooth clock along the path is a spline, and the fastest one within all limits is found by a barrier method, after
+/// Debrouwere et al. (2013).
 ///
 /// Args:
 ///     waypoints_q: (k, n), joint positions of the waypoints (rad, m).
@@ -27,7 +28,7 @@ use crate::trajectory::{PyTrajectory, names};
 ///     blend: for a polyline: corners are rounded from this distance before to this distance after them (in joint space, at
 ///         most half a line); None or 0: the joints stop at each corner.
 ///     gridpoints: number of points at which the acceleration along the path may change; None: refined until the duration
-///         no longer improves.
+///         no longer improves. With jerk limits the spline has its own knots.
 ///     start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
 ///     joint_names: n names; None: "q1", "q2" and so on.
 ///     tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path

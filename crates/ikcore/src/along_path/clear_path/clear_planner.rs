@@ -144,8 +144,8 @@ impl ClearPlanner<'_> {
             let Self { fractions, price, passage, .. } = &mut self;
             Smoothing { fractions, price, passage, starts_as_given }.smooth(&mut sequence)?;
             let nominal = JointWaypoints { knots: self.fractions.clone(), rows: sequence.concat() };
-            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
-            let smooth = self.problem.motion(&interpolation, waypoints.clone(), self.accuracy)?;
+            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy, round == 0)?;
+            let smooth = self.problem.motion(&interpolation, waypoints.clone())?;
             let fault = self.fault(&smooth);
             if round == 0 {
                 let improved;
@@ -194,17 +194,17 @@ impl ClearPlanner<'_> {
         waypoints: JointWaypoints,
         monitor: &mut dyn Monitor,
     ) -> Result<(FollowedPath, Option<SearchResult>)> {
-        let Self { problem, space, accuracy, .. } = self;
+        let Self { problem, space, .. } = self;
         let starts_as_given = problem.options.start.is_some();
         let motion =
-            NullSpaceOffsets::around(&problem.robot, problem.tip_path, problem.keeps, waypoints, starts_as_given);
+            NullSpaceOffsets::around(&problem.robot, interpolation.tip_path, problem.keeps, waypoints, starts_as_given);
         let mut cost = TimedCost::new(problem, motion, interpolation);
         cost.space = *space;
         let budget = Stop { max_evaluations: EVALUATIONS, ..Stop::default() };
         let found = search(&mut cost, problem.options, problem.options.stop.unwrap_or(budget), monitor)?;
         let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
         let (waypoints, _) = cost.waypoints(z);
-        Ok((problem.motion(&cost.interpolation, waypoints, *accuracy)?, found))
+        Ok((problem.motion(&cost.interpolation, waypoints)?, found))
     }
 
     fn fault(&self, motion: &FollowedPath) -> Option<Fault> {
@@ -266,8 +266,8 @@ impl ClearPlanner<'_> {
             }
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.fractions), rows: sequence.concat() };
-        let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy)?;
-        let motion = self.problem.motion(&interpolation, waypoints, self.accuracy)?;
+        let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy, false)?;
+        let motion = self.problem.motion(&interpolation, waypoints)?;
         let plan = self.finished(motion, None, Some(Status::InCollision))?;
         Ok(Plan { obstruction: Some(obstruction), own_points, ..plan })
     }

@@ -65,6 +65,8 @@ pub(crate) struct Interpolation<'a> {
     pub keeps: PathKeeps<'a>,
     /// Behaviour at corners.
     pub corners: Corners,
+    /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
+    pub accuracy: f64,
 }
 
 /// Largest deviation of the tip in an interval that is not halved, as a fraction of the accuracy.
@@ -131,12 +133,12 @@ impl Interpolation<'_> {
         Err(Error::InvalidPath { problem })
     }
 
-    /// Returns the waypoints with knots added until the tip is within `accuracy` (m, rad) of the path, or until more
-    /// knots do not help.
+    /// Returns the waypoints with knots added until the tip is within the accuracy, or until more knots do not help.
     ///
     /// # Errors
     /// None in practice, as for [`path`](Self::path).
-    pub(super) fn refined(&self, mut waypoints: JointWaypoints, accuracy: f64) -> Result<JointWaypoints> {
+    pub(super) fn refined(&self, mut waypoints: JointWaypoints) -> Result<JointWaypoints> {
+        let accuracy = self.accuracy;
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
             let deviation = deviation_on(self.robot, self.tip_path, &path);
@@ -159,6 +161,15 @@ impl Interpolation<'_> {
             waypoints = finer;
         }
         Ok(waypoints)
+    }
+
+    /// Returns these waypoints of another path with the tip on this one; `None` where it cannot be moved there.
+    pub(super) fn moved(&self, mut waypoints: JointWaypoints) -> Option<JointWaypoints> {
+        let n = self.robot.dof();
+        let mut projection = Projection::new(self.robot, self.keeps);
+        let met = waypoints.knots.iter().zip(waypoints.rows.chunks_exact_mut(n));
+        let mut met = met.map(|(knot, q)| projection.project(&self.tip_path.path_target(*knot), q) == 0.0);
+        met.all(|is_met| is_met).then_some(waypoints)
     }
 
     /// Largest excess of a joint over its limits between two knots (rad, m).

@@ -19,6 +19,12 @@ const METHOD: Setting = Setting::Method("timed");
 /// Segments of the timing per piece of the spline when the alternatives at corners are compared.
 const SEGMENTS_A_PIECE: usize = 4;
 
+/// Accuracies for which corners are rounded, each half of the one before.
+const ACCURACIES: u32 = 5;
+
+/// The part of the accuracy that a rounded corner uses; the rest is for the spline along it.
+const ROUNDING_SHARE: f64 = 0.8;
+
 /// A path with checked options.
 pub(crate) struct PathProblem<'a> {
     /// The robot, with the position limits to keep.
@@ -29,12 +35,36 @@ pub(crate) struct PathProblem<'a> {
     pub limits: ConstantLimits,
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad).
     pub accuracy: f64,
+    /// The same path with rounded corners; empty where it has none.
+    rounded: Vec<RoundedPath>,
     /// What holds at every instant.
     pub keeps: PathKeeps<'a>,
     /// The options of the call, with a start that the gate has taken.
     pub options: &'a AlongPathOptions,
     /// Stopwatch of the call.
     pub stopwatch: Stopwatch,
+}
+
+/// A path with rounded corners.
+struct RoundedPath {
+    path: TipPath,
+    /// How far it is off the path with corners (m, rad) at most.
+    off: f64,
+    /// The accuracy that it is made for.
+    most: f64,
+}
+
+impl RoundedPath {
+    /// Rounded paths for accuracies that are powers of two, so that a wider accuracy has those of a tighter one.
+    fn all(tip_path: &TipPath, accuracy: f64) -> Vec<Self> {
+        let widest = accuracy.log2().floor();
+        let of = |most: f64| {
+            let off = ROUNDING_SHARE * most;
+            tip_path.rounded(off).map(|path| Self { path, off, most })
+        };
+        let narrower = (1..ACCURACIES).map(|halvings| (widest - f64::from(halvings)).exp2());
+        std::iter::once(accuracy).chain([widest.exp2()]).chain(narrower).map_while(of).collect()
+    }
 }
 
 /// A path that the tip follows, as joint motion.
@@ -69,11 +99,12 @@ impl<'a> PathProblem<'a> {
             refuse_broken("start_q", keeps.keeps, keeps.robot, q)?;
         }
         let robot = limits.applied_to(robot)?;
-        Ok(Self { robot, tip_path, limits, accuracy, keeps, options, stopwatch })
+        let rounded = RoundedPath::all(tip_path, accuracy);
+        Ok(Self { robot, tip_path, limits, accuracy, rounded, keeps, options, stopwatch })
     }
 
-    /// Decides whether the arm stops at corners, depending on which motion through `nominal` is faster. Returns the waypoints
-    /// with the knots that this motion needs.
+    /// Decides whether the arm stops at corners, passes them or rounds them (only where `may_round`): whichever motion through `nominal`
+    /// is the fastest. Returns the waypoints with the knots that this motion needs.
     ///
     /// # Errors
     /// None in practice: waypoints that differ define a spline.
@@ -81,21 +112,43 @@ impl<'a> PathProblem<'a> {
         &'a self,
         nominal: &JointWaypoints,
         accuracy: f64,
+        may_round: bool,
     ) -> Result<(Interpolation<'a>, JointWaypoints)> {
-        let Self { robot, tip_path, limits, keeps, .. } = self;
+        let Self { robot, keeps, .. } = self;
+        let on = |tip_path: &'a TipPath, corners: Corners, accuracy: f64| Interpolation {
+            robot,
+            tip_path,
+            keeps: *keeps,
+            corners,
+            accuracy,
+        };
+        let rounded = self.rounded.iter().filter(|rounded| may_round && rounded.off < accuracy);
+        let rounded =
+            rounded.map(|rounded| on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off));
+        let as_given = Corners::on(self.tip_path).iter().map(|corners| on(self.tip_path, *corners, accuracy));
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
-        for corners in Corners::on(tip_path) {
-            let interpolation = Interpolation { robot, tip_path, keeps: *keeps, corners: *corners };
-            let waypoints = interpolation.refined(nominal.clone(), accuracy)?;
-            let path = interpolation.path(&waypoints)?;
-            let duration = coarse_duration(&path, limits, SEGMENTS_A_PIECE * path.pieces())?;
+        for interpolation in as_given.chain(rounded) {
+            let is_given = std::ptr::eq(interpolation.tip_path, self.tip_path);
+            let start = if is_given { Some(nominal.clone()) } else { interpolation.moved(nominal.clone()) };
+            let Some(start) = start else { continue };
+            let waypoints = interpolation.refined(start)?;
+            let duration = self.duration(&interpolation, &waypoints)?;
             if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
                 quickest = Some((duration, interpolation, waypoints));
             }
         }
-        let stopped = Interpolation { robot, tip_path, keeps: *keeps, corners: Corners::Stopped };
-        let stopping = || (stopped, nominal.clone());
+        let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone());
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
+    }
+
+    /// Duration (s) of a motion: roughly, if accelerations may jump.
+    fn duration(&self, interpolation: &Interpolation<'_>, waypoints: &JointWaypoints) -> Result<f64> {
+        if self.limits.limit_jerk() && !self.rounded.is_empty() {
+            let stretches = interpolation.stretches(waypoints)?;
+            return Ok(time_all(&stretches, &self.limits)?.duration());
+        }
+        let path = interpolation.path(waypoints)?;
+        coarse_duration(&path, &self.limits, SEGMENTS_A_PIECE * path.pieces())
     }
 
     /// Whether everything that is to be kept is certified to hold along a motion.
@@ -109,13 +162,8 @@ impl<'a> PathProblem<'a> {
     ///
     /// # Errors
     /// None in practice, as for [`corners_of`](Self::corners_of).
-    pub(crate) fn motion(
-        &self,
-        interpolation: &Interpolation<'_>,
-        waypoints: JointWaypoints,
-        accuracy: f64,
-    ) -> Result<FollowedPath> {
-        let mut waypoints = interpolation.refined(waypoints, accuracy)?;
+    pub(crate) fn motion(&self, interpolation: &Interpolation<'_>, waypoints: JointWaypoints) -> Result<FollowedPath> {
+        let mut waypoints = interpolation.refined(waypoints)?;
         if self.options.start.is_none() {
             interpolation.draw_inside(&mut waypoints)?;
         }

@@ -24,8 +24,8 @@ const POPULATION: usize = 30;
 pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
     let mut candidates = vec![];
     for waypoints in NominalMotions::new(problem).all()? {
-        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy)?;
-        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone(), problem.accuracy)?);
+        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy, true)?;
+        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone())?);
         candidates.push(Candidate { plan, interpolation, waypoints });
     }
     let mut candidates = candidates.into_iter();
@@ -60,7 +60,8 @@ impl<'p> Candidate<'p> {
         searches: u32,
         monitor: &mut dyn Monitor,
     ) -> Result<(Plan, Option<SearchResult>)> {
-        let PathProblem { robot, tip_path, options, .. } = problem;
+        let PathProblem { robot, options, .. } = problem;
+        let tip_path = self.interpolation.tip_path;
         let motion = NullSpaceOffsets::around(robot, tip_path, problem.keeps, self.waypoints, options.start.is_some());
         let mut cost = TimedCost::new(problem, motion, self.interpolation);
         let budget = options.stop.unwrap_or(Stop { max_evaluations: EVALUATIONS, ..Stop::default() });
@@ -71,7 +72,7 @@ impl<'p> Candidate<'p> {
         };
         let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
         let (waypoints, _) = cost.waypoints(&found.x);
-        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints, problem.accuracy)?);
+        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints)?);
         // The search times a motion only roughly.
         Ok((if is_better(&self.plan, &plan) { self.plan } else { plan }, Some(found)))
     }

@@ -6,12 +6,14 @@
 //! | `path_target`, `tolerance_band` | what the tip has to meet at a point of it, and how far it may be off |
 //! | `sampling` | the curve of a timed path |
 //! | `corners` | where its direction jumps |
+//! | `rounded` | the curve with rounded corners |
 //! | `segment_geometry` | angles and distances of single segments |
 //! | `repetition` | points that must differ |
 
 mod corners;
 mod path_target;
 mod repetition;
+mod rounded;
 mod sampling;
 mod segment_geometry;
 mod tip_curve;

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::path_target::PathTarget;
 use super::repetition::refuse_repetition;
+use super::rounded::Place;
 use super::segment_geometry::{distance_to_segment, turn};
 use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
@@ -252,10 +253,8 @@ impl TipPath {
 
     /// The whole pose at this path parameter, or the position where the path has no orientations.
     pub fn pose(&self, fraction: f64) -> Target {
-        let (row, part) = self.locate(fraction);
         let position = self.position(fraction);
-        let Some(rows) = &self.rotations else { return Target::Position(position) };
-        let rotation = rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row];
+        let Some(rotation) = self.rotation(fraction) else { return Target::Position(position) };
         Target::Pose(Frame::from(&pose::from_parts(position, rotation.to_rotation_matrix().into_inner())))
     }
 
@@ -263,6 +262,29 @@ impl TipPath {
         let (row, part) = self.locate(fraction);
         let [from, to] = [self.positions[row], self.positions[row + 1]];
         std::array::from_fn(|k| (1.0 - part) * from[k] + part * to[k])
+    }
+
+    pub(super) fn rotation(&self, fraction: f64) -> Option<UnitQuaternion<f64>> {
+        let (row, part) = self.locate(fraction);
+        self.rotations.as_ref().map(|rows| rows[row].rotation_to(&rows[row + 1]).powf(part) * rows[row])
+    }
+
+    /// The same curve without corners, with rows at these path parameters: at the `place` where there is one.
+    pub(super) fn resampled(&self, fractions: Vec<f64>, place: impl Fn(f64) -> Option<Place>) -> Self {
+        let place = |at: &f64| place(*at).unwrap_or_else(|| (self.position(*at), self.rotation(*at)));
+        let (positions, rotations): (Vec<_>, Vec<_>) = fractions.iter().map(place).unzip();
+        let time = |times: &Vec<f64>, at: f64| {
+            let (row, part) = self.locate(at);
+            between(times[row], times[row + 1], part)
+        };
+        Self {
+            times: self.times.as_ref().map(|times| fractions.iter().map(|at| time(times, *at)).collect()),
+            rotations: rotations.into_iter().collect(),
+            positions,
+            fractions,
+            corners: vec![],
+            ..self.clone()
+        }
     }
 
     /// The distance (m) of a position from the part of the curve between two path parameters.
