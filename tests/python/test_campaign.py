@@ -157,6 +157,10 @@ SPOILED = {
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",
     ),
+    "programs": (
+        "motion = bik.Trajectory(motion.time, motion.coefficients + 10.0 * np.eye(1, motion.coefficients.shape[2]))",
+        "a joint is outside its limits",
+    ),
     "looser_paths": (
         "plans += [(False, inf, '')]",
         "no plan with a wider tolerance",

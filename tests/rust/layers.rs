@@ -131,6 +131,23 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "moves",
+        &[
+            "robot",
+            "trajectory",
+            "objective",
+            "limits",
+            "constraint",
+            "obstacle",
+            "task",
+            "solver",
+            "ik",
+            "timing",
+            "plan",
+            "free_path",
+        ],
+    ),
+    (
         "tpbso",
         &[
             "robot",
@@ -162,6 +179,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "free_path",
             "approach_retreat",
             "along_path",
+            "moves",
             "tpbso",
         ],
     ),

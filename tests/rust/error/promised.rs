@@ -34,8 +34,9 @@ use ikcore::objective::Bounds;
 use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
-    AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
-    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal, time_optimal_within,
+    AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Move, MoveKind, MovesOptions, Plan,
+    PointToPointOptions, SplineEnds, StraightLine, TimingOptions, TipPath, plan_along_path, plan_moves,
+    plan_point_to_point, time_optimal, time_optimal_within,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;

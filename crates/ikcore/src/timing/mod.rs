@@ -47,7 +47,7 @@ pub use joint_path::JointPath;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};
-pub(crate) use time_optimal::{coarse_duration, time_all};
+pub(crate) use time_optimal::{coarse_duration, time, time_all};
 pub(crate) use time_scaling::scaled;
 pub use violation::Violation;
 pub use within_tolerance::time_optimal_within;

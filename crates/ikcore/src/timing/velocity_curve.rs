@@ -36,7 +36,7 @@ pub(super) fn maximum_velocity_curve(
     curve
 }
 
-/// Returns the minimum over the joints of (v / q')^2; zero at corners.
+/// Returns the minimum over the joints of (v / q')^2, and of the squared path speeds asked for; zero at corners.
 fn at_grid_points(
     path: &JointPath,
     limits: &ConstantLimits,
@@ -44,17 +44,18 @@ fn at_grid_points(
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
     let mut curve = vec![UNLIMITED; segments.len() + 1];
-    let bound = |slope: &[f64]| {
+    let bound = |piece: usize, slope: &[f64]| {
         let ratios = slope
             .iter()
             .zip(&limits.velocity)
             .map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
-        ratios.map(|ratio| ratio * ratio).fold(UNLIMITED, f64::min)
+        let asked = path.largest_speed(piece);
+        ratios.chain([asked]).map(|speed| speed * speed).fold(UNLIMITED, f64::min)
     };
     for (i, segment) in segments.iter().enumerate() {
         derivatives.fill(path, segment);
-        curve[i] = bound(&derivatives.first[0]).min(curve[i]);
-        curve[i + 1] = bound(&derivatives.first[2]);
+        curve[i] = bound(segment.piece, &derivatives.first[0]).min(curve[i]);
+        curve[i + 1] = bound(segment.piece, &derivatives.first[2]);
         if segment.piece > 0 && segment.from == 0.0 && path.has_corner_after(segment.piece - 1) {
             curve[i] = 0.0;
         }

@@ -27,7 +27,7 @@ pub(super) struct RatePoint {
     pub weights: Weights,
     /// Weight in the integral over the clock.
     pub share: f64,
-    /// 1 / y where a velocity limit is reached; zero without.
+    /// 1 / y where a velocity limit or the largest path speed is reached; zero without.
     pub slowness: f64,
 }
 
@@ -48,7 +48,7 @@ impl Constraints {
         for (interval, time) in times.iter().enumerate() {
             for [place, weight] in PLACES {
                 let at = clock.at(rate.reading(interval, place), rate.reading(interval, 0.5));
-                let mut slowness = 0.0_f64;
+                let mut slowness = at.slowness();
                 for joint in 0..limits.dof() {
                     let [_, first, second, third] = at.joint(joint);
                     let [v, a, b] = inverses(limits, joint, *time);

@@ -121,6 +121,8 @@ fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantL
         push(interval, 1.0);
     }
     let motion = Trajectory::from_samples(path.joints().to_vec(), &times, &q, Some(&qd), Some(&qdd))?;
-    let slowdown = limits.slowdown(&motion);
+    // A path with speeds of its own is not passed faster than these.
+    let least = if path.has_speeds() { 1.0 } else { 0.0 };
+    let slowdown = limits.slowdown(&motion).max(least);
     motion.slowed(slowdown * (1.0 + ROUNDING))
 }
