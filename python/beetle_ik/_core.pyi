@@ -634,10 +634,24 @@ class Limits:
         lower, upper: position limits (rad, m).
         velocity: velocity limits (rad/s, m/s).
         acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
+        tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
+            origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
+            limit. Planned motions keep them at every instant, not only at samples.
 
-    Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+    Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
     are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
     no limit is ignored.
+
+    For example, a cobot whose tool moves at 0.25 m/s at most:
+
+        >>> limits = bik.Limits(velocity=2.0, acceleration=8.0, tip_speed=0.25)
+        >>> plan = bik.plan_point_to_point(bik.Robot.named("ur5e"), start_q=[0, -1.5, 1.5, 0, 0, 0], end_q=[1, -1, 1, 0, 0, 0], limits=limits)
+        >>> plan.success
+        True
+
+    Raises:
+        LimitError: a negative limit; a limit of a tip that is not positive.
+        InvalidInputError: NaN, no number, or a dict that is not by tip.
     """
 
     def __new__(
@@ -648,6 +662,9 @@ class Limits:
         velocity: _LimitIn | None = None,
         acceleration: _LimitIn | None = None,
         jerk: _LimitIn | None = None,
+        tip_speed: float | Mapping[str, float] | None = None,
+        tip_acceleration: float | Mapping[str, float] | None = None,
+        tip_turn_speed: float | Mapping[str, float] | None = None,
     ) -> Limits: ...
     @property
     def lower(self) -> _LimitOut:
@@ -664,6 +681,15 @@ class Limits:
     @property
     def jerk(self) -> _LimitOut:
         """Jerk limits (rad/s^3, m/s^3), as given."""
+    @property
+    def tip_speed(self) -> float | dict[str, float] | None:
+        """Limits of the speed of tips (m/s), as given."""
+    @property
+    def tip_acceleration(self) -> float | dict[str, float] | None:
+        """Limits of the acceleration of tips (m/s^2), as given."""
+    @property
+    def tip_turn_speed(self) -> float | dict[str, float] | None:
+        """Limits of how fast tips turn (rad/s), as given."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- solvers ------------------------------------------------------------------------------------
@@ -3596,6 +3622,7 @@ def time_optimal(
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
     tolerance: float | ArrayLike | None = None,
+    robot: Robot | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
@@ -3618,6 +3645,8 @@ def time_optimal(
         tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
             parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
             is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+        robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
+            `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
     Equal consecutive rows, as a recording has at rest, are one waypoint.
 
@@ -3628,7 +3657,8 @@ def time_optimal(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline without `tolerance`, limits of tips
+            without `robot`, or limits of a tip on a floating base.
 
     For example:
 
