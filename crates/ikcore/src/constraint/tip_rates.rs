@@ -120,6 +120,25 @@ impl TipRates {
         each.filter_map(excess).collect()
     }
 
+    /// The parts of the limits of each tip that joints on these polynomials use at `t` (s).
+    pub fn shares(&self, polynomials: &[Coefficients], t: f64) -> impl Iterator<Item = (usize, TipField, f64)> {
+        let mut at = Interval::new(&self.robot);
+        at.set(&self.robot, polynomials.iter().copied(), [t, 1.0]);
+        let of_tip = |(i, tip): (usize, &LimitedTip)| {
+            let jet = at.jet(&self.robot, tip);
+            TipField::ALL.map(|field| {
+                let [slowdown, _] = tip.factor(&jet, 1.0, field);
+                (i, field, if field == TipField::Acceleration { slowdown * slowdown } else { slowdown })
+            })
+        };
+        self.tips.iter().enumerate().flat_map(of_tip).collect::<Vec<_>>().into_iter()
+    }
+
+    /// Name of a limited tip.
+    pub fn name(&self, tip: usize) -> &str {
+        &self.tips[tip].name
+    }
+
     fn largest(&self, motion: &Trajectory, fields: &[TipField], only: Option<usize>, enough: f64) -> f64 {
         let of = only.map_or(&self.tips[..], |tip| &self.tips[tip..=tip]);
         // A rate far below its limit may be any; so a tip that stays in place needs no short intervals.
