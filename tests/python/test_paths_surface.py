@@ -276,6 +276,13 @@ def test_rows_over_a_pipe_go_round_it_where_all_is_covered() -> None:
     assert half[0].length == pytest.approx(np.pi * 0.1, rel=1e-2)
 
 
+def test_a_closed_part_is_covered_from_above() -> None:
+    one, other = (
+        bik.paths.raster(BALL, spacing=0.1, direction=(1, 0, 0), **side) for side in ({}, {"side": (0, 0, 1)})
+    )
+    assert one == other
+
+
 def test_a_hole_divides_a_row() -> None:
     plate = trimesh.creation.annulus(r_min=0.1, r_max=0.3, height=0.02, sections=256)
     passes = bik.paths.raster(plate, spacing=0.05, direction=(1, 0, 0), side=(0, 0, 1), inset=0.01)
@@ -319,6 +326,12 @@ def test_a_plane_through_vertices_cuts_once() -> None:
 
 # --- wrong input ----------------------------------------------------------------------------------
 
+AROUND = np.linspace(0, 2 * np.pi, 13)[:-1]
+RING = np.column_stack([np.cos(AROUND), np.sin(AROUND), 0 * AROUND])
+TUBE = (
+    np.concatenate([RING, RING + [0, 0, 1]]),
+    [f for i in range(12) for j in [(i + 1) % 12] for f in ((i, j, 12 + j), (i, 12 + j, 12 + i))],
+)
 ALONG = {"spacing": 0.1, "direction": (1, 0, 0)}
 STRIP = np.array([(np.cos(a) * (1 + w * np.cos(a / 2)), np.sin(a) * (1 + w * np.cos(a / 2)), w * np.sin(a / 2))
                   for a in np.linspace(0, 2 * np.pi, 25)[:-1] for w in (-0.2, 0.2)])  # fmt: skip
@@ -348,7 +361,8 @@ MOEBIUS = [tuple({48: 1, 49: 0}.get(v, v) for v in face) for face in MOEBIUS]
     (lambda: api.paths.on_surface(TABLE, LINE, crease=4.0), "crease must be between 0 and 3.14159, got 4"),
     (lambda: api.paths.on_surface(TABLE, LINE, lead="along"), "lead must be 'normal' or 'tangent', got 'along'"),
     (lambda: api.paths.on_surface(TABLE, LINE, closed=1), "closed must be True or False, got 1"),
-    (lambda: api.paths.raster(TABLE, **ALONG), "side= is needed: the surface is closed; it is the direction from the part to the tool"),
+    (lambda: api.paths.raster(TABLE, spacing=0.1, direction=(0, 0, 1)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
+    (lambda: api.paths.raster(TUBE, **ALONG), "side= is needed: the normals of the surface point to all sides"),
     (lambda: api.paths.raster(SHEET, spacing=0.1, direction=(0, 0, 2)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
     (lambda: api.paths.raster(SHEET, spacing=0.1, direction=(0, 0, 0)), "direction must not be zero, got [0.0, 0.0, 0.0]"),
     (lambda: api.paths.raster(SHEET, spacing=0.0, direction=(1, 0, 0)), "spacing must be positive and finite, got 0"),

@@ -304,7 +304,7 @@ ROWS: list[Row] = [
     ("vision.locate_arm", Missing, lambda at: api.vision.locate_arm(np.zeros((9, 9)), at.without("skimage").value(PLANAR), np.zeros(3)), "locate_arm needs scikit-image: pip install 'beetle-ik[vision]'"),
     ("paths.on_surface", Invalid, lambda at: api.paths.on_surface(SLAB, [(0, 0, 0.1), (0, 0, 1.1)]), "points[1] is 1 m from the surface, farther than within=0.06: give a larger within=, or move it nearer"),
     ("paths.on_surface", Missing, lambda at: api.paths.on_surface(at.without("trimesh").value(SLAB), [(0, 0, 0.1), (0.1, 0, 0.1)]), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
-    ("paths.raster", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0)), "side= is needed: the surface is closed; it is the direction from the part to the tool"),
+    ("paths.raster", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(0, 0, 1)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
     ("paths.raster", Missing, lambda at: api.paths.raster(at.without("trimesh").file("part.stl", ""), spacing=0.1, direction=(1, 0, 0)), "a surface from a file needs trimesh: pip install 'beetle-ik[surfaces]'"),
     ("paths.join", Invalid, lambda at: api.paths.join([]), "seams: at least one is needed, got none"),
     ("paths.Seam.path", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0].path(0.0), "speed must be positive and finite, got 0"),

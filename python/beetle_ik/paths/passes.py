@@ -52,7 +52,7 @@ def raster(
         direction: direction (3,) of the first row; the part along `side` is left out.
         standoff: distance of the tip from the surface, along the tool's axis (m).
         side: direction (3,) from the part to the tool, away from the surface. Faces that look that way are covered.
-            None: the mean normal of the surface, if it is open.
+            None: the mean normal of an open surface, and from above, (0, 0, 1), for a closed one.
         steepest: largest angle between a covered face's normal and `side` (rad). The default covers all that looks
             towards the tool, up to vertical walls; np.pi covers everything.
         inset: distance of the passes from the border of the covered surface and from its holes (m); None: half the
@@ -67,7 +67,7 @@ def raster(
 
     Raises:
         InvalidInputError: a surface that is none or has one side only, a file that cannot be read, NaN, a direction
-            along `side`, no `side` for a closed surface, or no face that looks towards it.
+            along `side`, no face that looks towards it, or no `side` for a surface that looks to all sides.
         BeetleIkError: trimesh is not installed, and the surface is a file.
 
     For example:
@@ -110,7 +110,7 @@ def _side(mesh: TriangleMesh, side: ArrayLike | None) -> Array:
     if side is not None:
         return unit("side", side)
     if mesh.closed:
-        raise InvalidInputError("side= is needed: the surface is closed; it is the direction from the part to the tool")
+        return np.array([0.0, 0.0, 1.0])
     mean = mesh.areas @ mesh.normals
     if np.linalg.norm(mean) < 1e-6 * mesh.areas.sum():
         raise InvalidInputError("side= is needed: the normals of the surface point to all sides")
