@@ -306,6 +306,7 @@ ROWS: list[Row] = [
     ("paths.on_surface", Missing, lambda at: api.paths.on_surface(at.without("trimesh").value(SLAB), [(0, 0, 0.1), (0.1, 0, 0.1)]), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
     ("paths.raster", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(0, 0, 1)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
     ("paths.raster", Missing, lambda at: api.paths.raster(at.without("trimesh").file("part.stl", ""), spacing=0.1, direction=(1, 0, 0)), "a surface from a file needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.join", Missing, lambda at: api.paths.join(api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0)), surface=at.without("trimesh").value(SLAB)), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
     ("paths.join", Invalid, lambda at: api.paths.join([]), "seams: at least one is needed, got none"),
     ("paths.Seam.path", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0].path(0.0), "speed must be positive and finite, got 0"),
     ("paths.from_gcode", Invalid, lambda at: api.paths.from_gcode(at.file("part.nc", "G81 X1")), "{folder}/part.nc: line 1: G81 is not read: G0 to G3, G17 to G21, G90 and G91 are"),

@@ -11,15 +11,13 @@ from .._core import InvalidInputError, Obstacle
 from ..calls.wording import worded_call
 from .checks import Array, number, require_count
 from .checks import direction as unit
-from .frames_along import Style, frames_along
-from .projection import CREASE
+from .frames_along import CREASE, Style, frames_along
+from .projection import ROUNDED, STEPS
 from .rows_over import offsets_over
 from .seam import Seam
 from .section import Curve, sections
 from .triangle_mesh import Indices, TriangleMesh, mesh_of
 
-_STEPS = 200  # poses over the diagonal of the surface, by default
-_ROUNDED = 5  # steps before and after an edge, by default
 _FACING = 1e-6  # cosine by which a face must look towards the tool, so that walls do not count
 _KEPT = 0.1  # of a pass that is shorter than its insets
 
@@ -81,11 +79,11 @@ def raster(
     """
     mesh = mesh_of(surface, flip=flip)
     pitch = number("spacing", spacing, above=True)
-    every = mesh.diagonal / _STEPS if step is None else number("step", step, above=True)
+    every = mesh.diagonal / STEPS if step is None else number("step", step, above=True)
     style = Style(
         standoff=number("standoff", standoff),
         crease=number("crease", crease, most=math.pi),
-        rounding=_ROUNDED * every if rounding is None else number("rounding", rounding),
+        rounding=ROUNDED * every if rounding is None else number("rounding", rounding),
         lead_in=0.0,
         lead_out=0.0,
         lead="normal",
