@@ -276,6 +276,13 @@ def test_rows_over_a_pipe_go_round_it_where_all_is_covered() -> None:
     assert half[0].length == pytest.approx(np.pi * 0.1, rel=1e-2)
 
 
+def test_a_row_is_whole_where_triangles_meet_within_an_edge() -> None:
+    vertices = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0.5, 0), (2, 0, 0), (2, 1, 0)]
+    faces = [(0, 1, 2), (0, 2, 3), (1, 5, 4), (4, 5, 6), (4, 6, 2)]
+    passes = bik.paths.raster((vertices, faces), spacing=0.2, direction=(1, 0, 0))
+    assert [round(row.length, 6) for row in passes] == [1.8] * 5
+
+
 def test_a_closed_part_is_covered_from_above() -> None:
     one, other = (
         bik.paths.raster(BALL, spacing=0.1, direction=(1, 0, 0), **side) for side in ({}, {"side": (0, 0, 1)})

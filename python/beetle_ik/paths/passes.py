@@ -19,6 +19,7 @@ from .section import Curve, sections
 from .triangle_mesh import Indices, TriangleMesh, mesh_of
 
 _FACING = 1e-6  # cosine by which a face must look towards the tool, so that walls do not count
+_TOUCHING = 1e-8  # of the diagonal: pieces that end and begin so near are one
 _KEPT = 0.1  # of a pass that is shorter than its insets
 
 
@@ -96,6 +97,7 @@ def raster(
     for row, offset in enumerate(offsets_over(mesh, faces, across, pitch, border)):
         pieces = [_oriented(curve, forward) for curve in sections(mesh, across, offset, faces)]
         pieces.sort(key=lambda curve: float(curve.points[0] @ forward))
+        pieces = _connected(pieces, _TOUCHING * mesh.diagonal)
         for curve in pieces if row % 2 == 0 else [_reversed(curve) for curve in reversed(pieces)]:
             at, on = _sampled(curve, every, 0.0 if curve.closed else border)
             passes.append(frames_along(at, mesh.normals_at(at, on, style.crease), style, closed=curve.closed))
@@ -145,6 +147,20 @@ def _oriented(curve: Curve, forward: Array) -> Curve:
     first = int((curve.points[:-1] @ forward).argmin())
     points = np.roll(curve.points[:-1], -first, axis=0)
     return Curve(np.concatenate([points, points[:1]]), np.roll(curve.faces, -first), True)
+
+
+def _connected(pieces: list[Curve], gap: float) -> list[Curve]:
+    """Joins pieces that meet end to start: where triangles meet at a part of an edge, their section is in two."""
+    whole: list[Curve] = []
+    for curve in pieces:
+        last = whole[-1] if whole else curve
+        if whole and not last.closed and np.linalg.norm(last.points[-1] - curve.points[0]) <= gap:
+            whole[-1] = Curve(
+                np.concatenate([last.points[:-1], curve.points]), np.append(last.faces, curve.faces), False
+            )
+        else:
+            whole.append(curve)
+    return whole
 
 
 def _reversed(curve: Curve) -> Curve:
