@@ -204,6 +204,11 @@ NEEDED: dict[str, dict[str, Any]] = {
     "paths.polyline": {"points": [(0, 0, 0), (1, 0, 0)], "duration": 1.0},
     "paths.rose": {**PLACED, "radius": 0.1, "k": 3},
     "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
+    "moves.Arc": {"via": (0, 0, 0), "pose": np.eye(4)},
+    "moves.Joints": {"q_or_pose": START},
+    "moves.Line": {"pose": np.eye(4)},
+    "moves.Wait": {"seconds": 1.0},
+    "plan_moves": {"robot": ARM, "moves": [bik.moves.Wait(1.0)], "start_q": START, "limits": LIMITS},
     "plan_batch": {"robot": PLANAR, "problems": [{"start": (1, 1, 0), "end": (1, 1.5, 0)}], "limits": LIMITS, **QUICK},
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
     "papers.planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.papers.CircleSwarm()},
@@ -230,6 +235,7 @@ NEEDED: dict[str, dict[str, Any]] = {
 # A right call would change what the others are called on, or leave a film that nobody looks at.
 ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
 MODULES = {"": bik, "tasks.": bik.tasks, "goals.": bik.goals, "paths.": bik.paths, "obstacles.": bik.obstacles}
+MODULES["moves."] = bik.moves
 MODULES |= {"papers.": bik.papers, "plot.": bik.plot, "filters.": bik.filters, "distributed.": distributed}
 
 
@@ -244,7 +250,7 @@ def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[...,
             continue
         if issubclass(thing, bik.BeetleIkError | bik.UnitsWarning | bik.Status):
             continue
-        if name not in ("Goal", "Obstacle", "Task"):
+        if name not in ("Goal", "Move", "Obstacle", "Task"):
             yield prefix + name, thing
         for method in vars(thing):
             if not method.startswith("_") and callable(getattr(thing, method)):
@@ -269,6 +275,7 @@ MADE_BY_THE_LIBRARY = [
     "InverseReachabilityMap",
     "Minimum",
     "ModelFreeResult",
+    "MoveReport",
     "Path",
     "Plan",
     "ReachabilityMap",
@@ -276,6 +283,7 @@ MADE_BY_THE_LIBRARY = [
     "SelfMotion",
     "Solution",
     "SolutionSet",
+    "SpeedBound",
     "Step",
     "TrackResult",
     "VelocityEllipsoid",
