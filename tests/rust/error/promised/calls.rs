@@ -20,6 +20,13 @@ pub fn calls() -> Vec<Row> {
         each: SolveOptions { limits: Some(wide()), ..SolveOptions::default() },
         ..AllOptions::default()
     };
+    let at_level = |level| NamedTask {
+        subject: Subject::Tip(level as usize),
+        task: Some(Task::from(TaskKind::Position).at_level(level)),
+        tolerance: Tolerance::default(),
+    };
+    let each = SolveOptions { tips: vec![at_level(0), at_level(1)], ..SolveOptions::default() };
+    let levels = AllOptions { each, ..AllOptions::default() };
     let problem = |q: &[f64]| PlanProblem {
         start: at(q),
         ends: vec![at(&[0.5; 2])],
@@ -52,11 +59,15 @@ pub fn calls() -> Vec<Row> {
         "Robot::urdf_with_geometry" SeveralTips: arms().urdf_with_geometry(&two_arms()), "writing a URDF takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "solve_batch" InRow: batch(&[[1.0, 0.5, 0.0], [NAN; 3]]), "row 1: target must be finite, but coordinate x is NaN";
         "solve_all" Contradiction: solve_all(&two(), &position, &turns, &mut Unattended), "taking all whole turns makes 202566 configurations; at most 10000 are allowed: narrow the limits";
+        "solve_all_tips" Contradiction: solve_all_tips(&arms(), &[position; 2], &levels, &mut Unattended), "all solutions meet all targets, so levels from 0 to 1 have no effect: give all tasks one level, or solve for one configuration, which meets them in their order";
         "self_motion" Contradiction: self_motion(&two(), &position, &SelfMotionOptions::default(), &mut Unattended), "self_motion needs one joint more than the target: robot 'planar2' has 2 joints, and this target takes 2";
         "plan_batch" InProblem: plans(&[0.0], 1), "problems[0]: start_q of robot 'planar2': expected 2 joints, got 1";
         "plan_batch" OutOfRange: plans(&[0.0; 2], 0), "threads must be from 1 to 1024, got 0";
         "plan_point_to_point" Unreachable: between(&[far()], &[0.0; 2]), "end cannot be reached: the nearest configuration found stays 7.000 m away";
         "plan_point_to_point" NoUsableEnd: between(&[far(), far()], &[0.0; 2]), "none of the 2 ends can be reached: end[0]: the nearest configuration found stays 7.000 m away; end[1]: the nearest configuration found stays 7.000 m away";
+        "plan_moves" InvalidMove: program([0.0; 3]), "the program: it has no moves: give at least one";
+        "plan_moves" Unreachable: program([0.9, 0.0, 0.0]), "?";
+        "plan_moves" NotFound: program([0.0, 0.0, 0.2]), "?";
         "plan_along_path" Unreachable: along(&[[9.0, 0.0, 0.0], [9.0, 1.0, 0.0]]), "points 0 to 1 of the path cannot be reached: the nearest configurations found within the limits stay up to 7.055 m away";
         "Plan::retime" Infeasible: between(&[at(&[0.5; 2])], &[0.0; 2]).unwrap().retime(&two(), Some(&rated().replace(Field::Upper, vec![Profile::Constant(0.2)]).unwrap())), "infeasible: the path of the plan leaves the limits: highest position of joint 'joint_1' is 0.5000 rad, allowed 0.2000 rad";
         "best_posture" NotFinite: best_posture(&robot("planar5"), &[NAN, 0.0, 0.0], &PostureOptions::default(), &mut Unattended), "target must be finite, but coordinate x is NaN";

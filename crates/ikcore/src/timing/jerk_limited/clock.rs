@@ -69,6 +69,11 @@ impl<'a> Clock<'a> {
 }
 
 impl PathPoint<'_> {
+    /// 1 / (du/dt)^2 where the path has its largest speed; zero without one.
+    pub(super) fn slowness(&self) -> f64 {
+        (self.rates[0] / self.path.largest_speed(self.piece)).powi(2)
+    }
+
     /// Position of a joint, and its first three derivatives by the clock.
     pub(super) fn joint(&self, joint: usize) -> [f64; 4] {
         let [position, first, second] = self.path.joint_at(self.piece, self.from, joint);

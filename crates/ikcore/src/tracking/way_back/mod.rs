@@ -303,7 +303,8 @@ impl WayBack {
             self.stay(if candidate == 0 { Way::Unknown } else { Way::Blocked }, end, false);
             return Next::Continue;
         };
-        if context.aims.has_pairs() {
+        // The way would part a pair, or leave the lowest level.
+        if context.aims.has_pairs() || context.aims.has_levels(context.robot) {
             self.stay(Way::Blocked, end, false);
             return Next::Continue;
         }

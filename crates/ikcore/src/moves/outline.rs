@@ -1,0 +1,111 @@
+//! What a program asks of the tip, before configurations are chosen.
+
+use super::corner::Corner;
+use super::leg::Leg;
+use super::program::{JointGoal, Move, MoveKind};
+use super::tool_path::ToolPath;
+use crate::error::{Error, Result};
+use crate::math::Pose;
+use crate::robot::Robot;
+use crate::wording::number;
+
+/// A part of a program, from rest to rest.
+#[derive(Debug, Clone)]
+pub(super) enum Step {
+    /// The joint move of this index.
+    Joints(usize),
+    /// Moves of the tip that blend into one another.
+    Along(ToolPath),
+    /// Move `index` rests for this time (s): a wait, or a move of the tip to where it is.
+    Rest(usize, f64),
+}
+
+/// A step, and the radius (m) of the blend into the next one; 0: the arm stops.
+#[derive(Debug, Clone)]
+pub(super) struct Stage {
+    pub step: Step,
+    pub blend: f64,
+}
+
+/// The parts of a program that begins at the configuration `start`.
+///
+/// # Errors
+/// [`Error::InvalidMove`].
+pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Vec<Stage>> {
+    let mut stages: Vec<Stage> = vec![];
+    let mut legs: Vec<Leg> = vec![];
+    let mut pose: Pose = robot.tip(start).into();
+    for (i, each) in moves.iter().enumerate() {
+        let blend = if i + 1 < moves.len() { each.blend } else { 0.0 };
+        let mut push = |step: Step, blend: f64| stages.push(Stage { step, blend });
+        match &each.kind {
+            MoveKind::Wait(seconds) => push(Step::Rest(i, *seconds), 0.0),
+            MoveKind::Joints(goal) => {
+                push(Step::Joints(i), blend);
+                pose = match goal {
+                    JointGoal::Configuration(q) => robot.tip(q).into(),
+                    JointGoal::Pose(goal) => *goal,
+                };
+            }
+            MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, &pose)? {
+                None => {
+                    let before = i.checked_sub(1).filter(|before| moves[*before].blend > 0.0);
+                    if let Some(with_blend) = before.or((blend > 0.0).then_some(i)) {
+                        return Err(no_room(moves, with_blend, i));
+                    }
+                    push(Step::Rest(i, 0.0), 0.0);
+                }
+                Some(leg) => {
+                    pose = end_of(&leg, each);
+                    require_length(moves, i, &leg)?;
+                    // No smooth curve leads back: the arm stops there.
+                    if legs.last().is_some_and(|before| Corner::turns_back(before, &leg)) {
+                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), 0.0);
+                    }
+                    legs.push(leg);
+                    let goes_on = blend > 0.0 && moves[i + 1].is_cartesian();
+                    if !goes_on {
+                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), blend);
+                    }
+                }
+            },
+        }
+    }
+    Ok(stages)
+}
+
+/// Checks that a blend between a move of the tip and a joint move is no longer than the former.
+fn require_length(moves: &[Move], i: usize, leg: &Leg) -> Result<()> {
+    let beside_joints = |k: usize| moves.get(k).is_some_and(|each| matches!(each.kind, MoveKind::Joints(_)));
+    let before = i.checked_sub(1).filter(|before| beside_joints(*before));
+    let after = Some(i).filter(|i| beside_joints(i + 1));
+    for with_blend in [before, after].into_iter().flatten() {
+        let radius = moves[with_blend].blend;
+        if radius > 0.0 && leg.length_within(radius) > leg.length {
+            let problem = format!(
+                "its blend of {radius} m does not fit into {}, which is {} m long: make the blend smaller",
+                moves[i].named(i),
+                number(leg.length)
+            );
+            return Err(Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() });
+        }
+    }
+    Ok(())
+}
+
+/// The pose at the end of a leg, as given.
+fn end_of(leg: &Leg, each: &Move) -> Pose {
+    match &each.kind {
+        MoveKind::Arc { pose, angle: Some(_), .. } => Pose::from_parts(leg.pose(leg.length).translation, pose.rotation),
+        MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => *pose,
+        MoveKind::Joints(_) | MoveKind::Wait(_) => leg.pose(leg.length),
+    }
+}
+
+fn no_room(moves: &[Move], with_blend: usize, still: usize) -> Error {
+    let problem = format!(
+        "its blend has no room, because {} ends where it begins: leave that out, or give no blend",
+        moves[still].named(still)
+    );
+    Error::InvalidMove { what: moves[with_blend].named(with_blend), problem: problem.into() }
+}
