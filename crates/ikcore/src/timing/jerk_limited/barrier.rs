@@ -3,7 +3,7 @@
 //! Each step needs a positive definite matrix with a few diagonals. The limit of the jerk is a linear form below the convex 1 / sqrt(y);
 //! the part of the second derivative that its curvature would take away is left out. All iterates keep all limits.
 
-use super::constraints::{Constraints, JointRow, RatePoint};
+use super::constraints::{Constraints, JointRow, RatePoint, TipRow};
 use super::rate_spline::RateSpline;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
     /// The duration with the barrier; `None` outside of the constraints.
     fn value(&self, coefficients: &[f64], barrier: f64) -> Option<f64> {
         let (mut duration, mut logarithms) = (0.0, 0.0);
-        for (point, rows) in self.constraints.all() {
+        for (point, rows, tips) in self.constraints.all() {
             let y = combined(point, coefficients);
             let room = 1.0 - point.slowness * y[0];
             if !(y[0] > 0.0 && room > 0.0) {
@@ -129,6 +129,14 @@ impl<'a> Search<'a> {
             let slow = 1.0 / y[0].sqrt();
             duration += point.share * slow;
             logarithms += room.ln();
+            for tip in tips {
+                let used = tip.used(&y);
+                let room = 1.0 - dot(&used, &used);
+                if !(room > 0.0) {
+                    return None;
+                }
+                logarithms += room.ln();
+            }
             for row in rows {
                 let [a, b] = row.used(&y);
                 let [of_acceleration, of_jerk] = [1.0 - a * a, slow * slow - b * b];
@@ -146,8 +154,10 @@ impl<'a> Search<'a> {
         let value = self.value(&self.at, barrier)?;
         self.gradient.fill(0.0);
         self.band.fill([0.0; SIDE_DIAGONALS + 1]);
-        for (point, rows) in self.constraints.all() {
-            let local = Local::of(point, rows, &combined(point, &self.at), barrier);
+        for (point, rows, tips) in self.constraints.all() {
+            let y = combined(point, &self.at);
+            let mut local = Local::of(point, rows, &y, barrier);
+            tips.iter().for_each(|tip| local.add_tip(barrier, tip, &y));
             for i in 0..3 {
                 let weights = |coefficient: usize| [0, 1, 2].map(|order| point.weights[order][coefficient]);
                 let of_i = weights(i);
@@ -193,6 +203,17 @@ impl Local {
     /// Adds - `barrier` log(room) for a room with this inverse and derivative.
     fn add(&mut self, barrier: f64, inverse: f64, slope: [f64; 3]) {
         self.add_pair(barrier, [-inverse, inverse * inverse], slope);
+    }
+
+    /// Adds the acceleration limit of a tip.
+    fn add_tip(&mut self, barrier: f64, tip: &TipRow, y: &[f64; 3]) {
+        let used = tip.used(y);
+        let inverse = 1.0 / (1.0 - dot(&used, &used));
+        self.add(barrier, inverse, [-2.0 * dot(&used, &tip.of_y), -2.0 * dot(&used, &tip.of_slope), 0.0]);
+        let bent = 2.0 * barrier * inverse;
+        self.curvature[0] += bent * dot(&tip.of_y, &tip.of_y);
+        self.curvature[1] += bent * dot(&tip.of_y, &tip.of_slope);
+        self.curvature[3] += bent * dot(&tip.of_slope, &tip.of_slope);
     }
 
     fn add_pair(&mut self, barrier: f64, [first, second]: [f64; 2], [x, y, z]: [f64; 3]) {

@@ -4,8 +4,11 @@
 //! sqrt(y) (Q''' y + 3/2 Q'' y' + 1/2 Q' y'').
 
 use super::super::constant_limits::ConstantLimits;
-use super::clock::Clock;
+use super::clock::{Clock, PathPoint};
 use super::rate_spline::{RateSpline, Weights};
+use crate::constraint::{Interval, TipRates, VectorJet};
+use crate::limits::TipField;
+use crate::math::vector3::{Vector, norm};
 
 /// Places in each interval where the limits are imposed, and their weights in integrals (Simpson's rule). At both ends, because the jerk
 /// jumps at knots.
@@ -18,6 +21,9 @@ pub(super) struct Constraints {
     /// By point, then by joint.
     rows: Vec<JointRow>,
     joints: usize,
+    /// By point, then by tip with an acceleration limit.
+    tip_rows: Vec<TipRow>,
+    tips: usize,
 }
 
 /// One point of the clock.
@@ -40,15 +46,27 @@ pub(super) struct JointRow {
     pub jerk: [f64; 3],
 }
 
+/// The acceleration limit of a tip at one point: |a y + b y'| <= 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TipRow {
+    pub of_y: Vector,
+    pub of_slope: Vector,
+}
+
 impl Constraints {
     /// The limits of a motion at the `rate` of a `clock`, whose intervals take about these times (s).
     pub(super) fn new(clock: &Clock, rate: &RateSpline, times: &[f64], limits: &ConstantLimits) -> Self {
         let mut points = Vec::with_capacity(PLACES.len() * rate.intervals());
         let mut rows = Vec::with_capacity(PLACES.len() * rate.intervals() * limits.dof());
+        let mut tips = limits.tips.as_ref().map(TipsAt::new);
+        let mut tip_rows = vec![];
         for (interval, time) in times.iter().enumerate() {
             for [place, weight] in PLACES {
                 let at = clock.at(rate.reading(interval, place), rate.reading(interval, 0.5));
                 let mut slowness = at.slowness();
+                if let Some(tips) = &mut tips {
+                    slowness = slowness.max(tips.push(&at, &mut tip_rows));
+                }
                 for joint in 0..limits.dof() {
                     let [_, first, second, third] = at.joint(joint);
                     let [v, a, b] = inverses(limits, joint, *time);
@@ -62,7 +80,8 @@ impl Constraints {
                 points.push(RatePoint { interval, weights, share: weight * rate.length(interval), slowness });
             }
         }
-        Self { points, rows, joints: limits.dof() }
+        let tips = tip_rows.len() / points.len();
+        Self { points, rows, joints: limits.dof(), tip_rows, tips }
     }
 
     /// The largest change of the jerk of a joint in an interval, and at its end to the next, as parts of its limit.
@@ -87,20 +106,25 @@ impl Constraints {
     }
 
     /// Each point with its rows.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&RatePoint, &[JointRow])> {
-        self.points.iter().zip(self.rows.chunks_exact(self.joints))
+    pub(super) fn all(&self) -> impl Iterator<Item = (&RatePoint, &[JointRow], &[TipRow])> {
+        self.points.iter().enumerate().zip(self.rows.chunks_exact(self.joints)).map(|((i, point), rows)| {
+            let tips = i * self.tips..(i + 1) * self.tips;
+            (point, rows, &self.tip_rows[tips])
+        })
     }
 
     /// Number of inequalities.
     pub(super) fn count(&self) -> usize {
-        self.points.len() + 4 * self.rows.len()
+        self.points.len() + 4 * self.rows.len() + self.tip_rows.len()
     }
 
     /// Measures the clock so that y = 1 everywhere reaches a limit and violates none. Returns that y in the old measure.
     pub(super) fn normalize(&mut self) -> f64 {
         let of_row = |row: &JointRow| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
-        let of_point =
-            |(point, rows): (&RatePoint, &[JointRow])| rows.iter().map(of_row).fold(point.slowness, f64::max);
+        let of_point = |(point, rows, tips): (&RatePoint, &[JointRow], &[TipRow])| {
+            let of_tips = tips.iter().map(|tip| norm(&tip.of_y)).fold(point.slowness, f64::max);
+            rows.iter().map(of_row).fold(of_tips, f64::max)
+        };
         let y = 1.0 / self.all().map(of_point).fold(0.0, f64::max);
         self.restore(1.0 / y);
         y
@@ -116,6 +140,51 @@ impl Constraints {
             row.acceleration = row.acceleration.map(|a| a * y);
             row.jerk = row.jerk.map(|b| b * y * y.sqrt());
         }
+        for tip in &mut self.tip_rows {
+            tip.of_y = tip.of_y.map(|a| a * y);
+            tip.of_slope = tip.of_slope.map(|b| b * y);
+        }
+    }
+}
+
+/// The motion of limited tips at a point of the clock.
+struct TipsAt<'a> {
+    rates: &'a TipRates,
+    interval: Interval,
+}
+
+impl<'a> TipsAt<'a> {
+    fn new(rates: &'a TipRates) -> Self {
+        Self { rates, interval: Interval::new(rates.robot()) }
+    }
+
+    /// Adds the rows of acceleration limits; returns 1 / y where a limit of speed or turn speed is reached.
+    fn push(&mut self, at: &PathPoint<'_>, rows: &mut Vec<TipRow>) -> f64 {
+        let robot = self.rates.robot();
+        self.interval.set(robot, (0..robot.dof()).map(|joint| at.expansion(joint)), [0.0, 1.0]);
+        let mut slowness = 0.0_f64;
+        for tip in self.rates.tips() {
+            let jet = self.interval.jet(robot, tip);
+            let part = |rate: &VectorJet, field| (norm(&rate.middle()) / tip.limit(field)).powi(2);
+            let speeds = [part(&jet.velocity, TipField::Speed), part(&jet.turn, TipField::TurnSpeed)];
+            slowness = speeds.into_iter().fold(slowness, f64::max);
+            let limit = tip.limit(TipField::Acceleration);
+            if limit.is_finite() {
+                let of_y = jet.velocity.derivative().middle().map(|a| a / limit);
+                rows.push(TipRow { of_y, of_slope: jet.velocity.middle().map(|v| 0.5 * v / limit) });
+            } else if self.rates.limit_acceleration() {
+                rows.push(TipRow { of_y: [0.0; 3], of_slope: [0.0; 3] });
+            }
+        }
+        slowness
+    }
+}
+
+impl TipRow {
+    /// The acceleration as a part of its limit.
+    #[inline]
+    pub(super) fn used(&self, [y, slope, _]: &[f64; 3]) -> Vector {
+        std::array::from_fn(|k| self.of_y[k] * y + self.of_slope[k] * slope)
     }
 }
 
