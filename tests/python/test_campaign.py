@@ -149,6 +149,10 @@ SPOILED = {
         "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
         "what is kept does not hold",
     ),
+    "tip_limits": (
+        "motion = bik.Trajectory(motion.time / 1e4, motion.coefficients * 1e4 ** np.arange(motion.coefficients.shape[2]))",
+        "a tip is beyond its limit",
+    ),
     "kept_motions": (
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",
