@@ -150,7 +150,8 @@ SPOILED = {
         "what is kept does not hold",
     ),
     "tip_limits": (
-        "motion = bik.Trajectory(motion.time / 1e4, motion.coefficients * 1e4 ** np.arange(motion.coefficients.shape[2]))",
+        "powers = motion.coefficients\nscale = 1e4 ** np.arange(powers.shape[2])\n"
+        "motion = bik.Trajectory(motion.time / 1e4, powers * scale)",
         "a tip is beyond its limit",
     ),
     "kept_motions": (

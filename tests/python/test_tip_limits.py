@@ -2,6 +2,7 @@
 
 import pickle
 import re
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,15 @@ UR5 = bik.Robot.named("ur5e")
 PAIR = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
 START, END = [0.0, -1.5, 1.5, 0.0, 0.0, 0.0], [1.0, -1.0, 1.0, 0.5, 0.0, 0.0]
 LINE = np.array([bik.pose([0.45, y, 0.15], rpy=[np.pi, 0, 0]) for y in np.linspace(-0.25, 0.25, 101)])
-SLIDING = """<robot name="gantry"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
-<joint name="rail" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="3" effort="1"/></joint>
-<joint name="turn" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0 0.2 0.4"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="3" effort="1"/></joint>
-<joint name="bend" type="revolute"><parent link="c"/><child link="d"/><origin xyz="0.5 0 0"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="3" effort="1"/></joint></robot>"""
+JOINT = """<joint name="{1}{2}" type="{0}"><parent link="{1}"/><child link="{2}"/><origin xyz="{3}"/><axis xyz="{4}"/>
+<limit lower="-3" upper="3" velocity="3" effort="1"/></joint>"""
+SLIDING = (
+    '<robot name="gantry"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>'
+    + JOINT.format("prismatic", "a", "b", "0 0 0", "1 0 0")
+    + JOINT.format("revolute", "b", "c", "0 0.2 0.4", "0 0 1")
+    + JOINT.format("revolute", "c", "d", "0.5 0 0", "0 1 0")
+    + "</robot>"
+)
 
 
 def limits(**tips: Any) -> bik.Limits:
@@ -50,7 +56,8 @@ def kept(robot: bik.Robot, trajectory: bik.Trajectory, *most: float, tip: str | 
 
 def test_a_line_runs_at_the_tip_speed_and_no_faster() -> None:
     plan = bik.plan_along_path(UR5, LINE, limits=limits(tip_speed=0.25))
-    assert plan.success and plan.violations == []
+    assert plan.success
+    assert plan.violations == []
     kept(UR5, plan.trajectory, 0.25, np.inf, np.inf)
     t = np.linspace(0.15, plan.trajectory.duration - 0.15, 500)
     q, qd, _ = plan.trajectory.at(t)
@@ -84,7 +91,12 @@ def test_each_limit_is_kept_and_reached_by_each_call(tips: dict[str, float]) -> 
 
 
 def test_a_loose_limit_changes_no_bit() -> None:
-    for loose in ({"tip_speed": 19.0}, {"tip_turn_speed": 44.0}, {"tip_speed": np.inf}, {"tip_speed": {UR5.tips[0]: 19.0}}):
+    for loose in (
+        {"tip_speed": 19.0},
+        {"tip_turn_speed": 44.0},
+        {"tip_speed": np.inf},
+        {"tip_speed": {UR5.tips[0]: 19.0}},
+    ):
         calls = (
             lambda given: bik.plan_point_to_point(UR5, start_q=START, end_q=END, limits=given).trajectory,
             lambda given: bik.plan_along_path(UR5, LINE, limits=given).trajectory,
@@ -102,10 +114,12 @@ def test_a_looser_limit_is_never_slower() -> None:
         name = ["tip_speed", "tip_acceleration", "tip_turn_speed"][rng.integers(3)]
         base = float(rng.choice([0.1, 0.25, 0.5, 1.0, rng.uniform(0.05, 1)]))
         durations = [
-            bik.plan_point_to_point(UR5, start_q=ends[0], end_q=ends[1], limits=limits(**{name: base * f})).trajectory.duration
+            bik.plan_point_to_point(
+                UR5, start_q=ends[0], end_q=ends[1], limits=limits(**{name: base * f})
+            ).trajectory.duration
             for f in (1.0, 1.1, 2.0, 10.0)
         ]
-        assert all(b <= a * (1 + 1e-3) for a, b in zip(durations, durations[1:], strict=False)), (name, base, durations)
+        assert all(b <= a * (1 + 1e-3) for a, b in pairwise(durations)), (name, base, durations)
 
 
 def test_two_tips_keep_limits_of_their_own() -> None:
@@ -128,7 +142,9 @@ def test_slides_bases_and_tools_count() -> None:
         assert kept(robot, trajectory, 0.3, np.inf, np.inf).max() > 0.98
     floating = UR5.with_mobile_base("floating", lower=[-1] * 6, upper=[1] * 6)
     q = np.zeros(floating.dof)
-    with pytest.raises(bik.UnsupportedLimit, match="cannot honour tip speed limits: a base that floats turns by a rotation vector"):
+    with pytest.raises(
+        bik.UnsupportedLimit, match="cannot honour tip speed limits: a base that floats turns by a rotation vector"
+    ):
         bik.plan_point_to_point(floating, start_q=q, end_q=q + 0.1, limits=limits(tip_speed=0.3))
 
 
@@ -169,8 +185,7 @@ def test_a_tracker_and_its_stop_keep_tip_speeds(rated: dict[str, float]) -> None
     rows = [q]
     for _ in range(12):
         target = bik.pose(rng.uniform([0.3, -0.4, 0.1], [0.6, 0.4, 0.6]), rpy=[np.pi, *rng.uniform(-0.5, 0.5, 2)])
-        for _ in range(25):
-            rows.append(tracker.step(target).q)
+        rows.extend(tracker.step(target).q for _ in range(25))
         if rng.random() < 0.5:
             tracker.stop()
             rows.extend(tracker.step(None).q for _ in range(20))
@@ -178,7 +193,8 @@ def test_a_tracker_and_its_stop_keep_tip_speeds(rated: dict[str, float]) -> None
     speed = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1) / 0.01
     turned = np.einsum("mji,mjk->mik", poses[:-1, :3, :3], poses[1:, :3, :3])
     turn = np.arccos(np.clip((np.trace(turned, axis1=1, axis2=2) - 1) / 2, -1, 1)) / 0.01
-    assert speed.max() <= 0.3 * (1 + 1e-9) and turn.max() <= 0.8 * (1 + 1e-6), (speed.max(), turn.max())
+    assert speed.max() <= 0.3 * (1 + 1e-9)
+    assert turn.max() <= 0.8 * (1 + 1e-6)
     assert max(speed.max() / 0.3, turn.max() / 0.8) > 0.98
 
 
@@ -187,31 +203,67 @@ def test_limits_are_values() -> None:
     assert repr(one) == "Limits(tip_speed=0.25, tip_turn_speed={'left': 2.0, 'right': 1.0})"
     assert (one.tip_speed, one.tip_acceleration, one.tip_turn_speed) == (0.25, None, {"left": 2.0, "right": 1.0})
     again = pickle.loads(pickle.dumps(one))
-    assert again == one and hash(again) == hash(one)
-    assert one != bik.Limits(tip_speed=0.25) and bik.Limits(tip_speed=0.25) != bik.Limits(tip_speed=0.3)
+    assert again == one
+    assert hash(again) == hash(one)
+    assert one != bik.Limits(tip_speed=0.25)
+    assert bik.Limits(tip_speed=0.25) != bik.Limits(tip_speed=0.3)
     plan = bik.plan_point_to_point(UR5, start_q=START, end_q=END, limits=limits(tip_speed=0.25))
     assert plan.limits.tip_speed == 0.25
 
 
 def test_units_that_look_wrong_warn() -> None:
-    with pytest.warns(bik.UnitsWarning, match=re.escape("tip speed limit is 250 m/s (no arm is as fast), which looks like")):
+    with pytest.warns(
+        bik.UnitsWarning, match=re.escape("tip speed limit is 250 m/s (no arm is as fast), which looks like")
+    ):
         bik.plan_point_to_point(UR5, start_q=START, end_q=END, limits=limits(tip_speed=250))
     with pytest.warns(bik.UnitsWarning, match="tip turn speed limit is 90 rad/s"):
         bik.plan_point_to_point(UR5, start_q=START, end_q=END, limits=limits(tip_turn_speed=90))
 
 
+NO_LIMIT = "it must be positive; None means no limit"
+
+
+def out(name: str) -> str:
+    return f", or leave out limits=Limits({name}=...)"
+
+
+Limit, Invalid, Unsupported = bik.LimitError, bik.InvalidInputError, bik.UnsupportedLimit
+MESSAGES = {
+    "number": "tip_speed must be a number, or a dict of numbers by tip, got 'fast'",
+    "timing": "time_optimal cannot honour tip speed limits: give the robot whose tips they are",
+    "solve": "solve cannot honour tip speed limits: a single configuration has no motion",
+    "states": "state_to_state cannot honour tip turn speed limits: each joint has its own time; "
+    "plan_point_to_point keeps them",
+    "track": "track cannot honour tip acceleration limits: a plan keeps them",
+}
 REFUSED = [
-    (lambda: api.Limits(tip_speed=0), bik.LimitError, "tip_speed is 0: it must be positive; None means no limit"),
-    (lambda: api.Limits(tip_speed=-0.1), bik.LimitError, "tip_speed is -0.1: it must be positive; None means no limit"),
-    (lambda: api.Limits(tip_acceleration=np.nan), bik.LimitError, "tip_acceleration is NaN: it must be positive; None means no limit"),
-    (lambda: api.Limits(tip_speed="fast"), bik.InvalidInputError, "tip_speed must be a number, or a dict of numbers by tip, got 'fast'"),
-    (lambda: api.Limits(tip_speed={}), bik.InvalidInputError, "tip_speed: the dict is empty; name one tip at least"),
-    (lambda: api.Limits(tip_speed={1: 0.2}), bik.InvalidInputError, "keys of tip_speed are names of tips, got 1"),
-    (lambda: api.Limits(tip_speed={"a": 0}), bik.LimitError, "tip_speed of tip 'a' is 0: it must be positive; None means no limit"),
-    (lambda: api.time_optimal([[0.0], [1.0]], limits(tip_speed=0.2)), bik.UnsupportedLimit, "time_optimal cannot honour tip speed limits: give the robot whose tips they are, or leave out limits=Limits(tip_speed=...)"),
-    (lambda: api.solve(UR5, LINE[0], limits=api.Limits(tip_speed=0.2)), bik.UnsupportedLimit, "solve cannot honour tip speed limits: a single configuration has no motion, or leave out limits=Limits(tip_speed=...)"),
-    (lambda: api.state_to_state(START, END, limits(tip_turn_speed=0.2), robot=UR5), bik.UnsupportedLimit, "state_to_state cannot honour tip turn speed limits: each joint has its own time; plan_point_to_point keeps them, or leave out limits=Limits(tip_turn_speed=...)"),
-    (lambda: api.Tracker(UR5, START, dt=0.01, limits=limits(tip_acceleration=1.0)), bik.UnsupportedLimit, "track cannot honour tip acceleration limits: a plan keeps them, or leave out limits=Limits(tip_acceleration=...)"),
+    (lambda: api.Limits(tip_speed=0), Limit, f"tip_speed is 0: {NO_LIMIT}"),
+    (lambda: api.Limits(tip_speed=-0.1), Limit, f"tip_speed is -0.1: {NO_LIMIT}"),
+    (lambda: api.Limits(tip_acceleration=np.nan), Limit, f"tip_acceleration is NaN: {NO_LIMIT}"),
+    (lambda: api.Limits(tip_speed="fast"), Invalid, MESSAGES["number"]),
+    (lambda: api.Limits(tip_speed={}), Invalid, "tip_speed: the dict is empty; name one tip at least"),
+    (lambda: api.Limits(tip_speed={1: 0.2}), Invalid, "keys of tip_speed are names of tips, got 1"),
+    (lambda: api.Limits(tip_speed={"a": 0}), Limit, f"tip_speed of tip 'a' is 0: {NO_LIMIT}"),
+    (
+        lambda: api.time_optimal([[0.0], [1.0]], limits(tip_speed=0.2)),
+        Unsupported,
+        MESSAGES["timing"] + out("tip_speed"),
+    ),
+    (
+        lambda: api.solve(UR5, LINE[0], limits=api.Limits(tip_speed=0.2)),
+        Unsupported,
+        MESSAGES["solve"] + out("tip_speed"),
+    ),
+    (
+        lambda: api.state_to_state(START, END, limits(tip_turn_speed=0.2), robot=UR5),
+        Unsupported,
+        MESSAGES["states"] + out("tip_turn_speed"),
+    ),
+    (
+        lambda: api.Tracker(UR5, START, dt=0.01, limits=limits(tip_acceleration=1.0)),
+        Unsupported,
+        MESSAGES["track"] + out("tip_acceleration"),
+    ),
 ]
 
 

@@ -1,4 +1,4 @@
-"""Limits of the speed, acceleration and turn speed of tips, judged at samples of the motion by the kinematics of numpy."""
+"""Limits of the speed, acceleration and turn speed of tips, judged at samples by the kinematics of numpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,11 @@ from ..attack import Attack, BrokenError, Case
 
 KINDS = ("tip_speed", "tip_acceleration", "tip_turn_speed")
 SAMPLES = 2000
-RATED = ("velocity=1.0, acceleration=4.0", "velocity=2.0, acceleration=1.0, jerk=20.0", "velocity=5.0, acceleration=100.0")
+RATED = (
+    "velocity=1.0, acceleration=4.0",
+    "velocity=2.0, acceleration=1.0, jerk=20.0",
+    "velocity=5.0, acceleration=100.0",
+)
 CALLS = {
     "plan": "motion = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], limits=limits).trajectory",
     "retime": "motion = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], limits=free).retime(limits).trajectory",
@@ -35,7 +39,10 @@ class TipLimits(Attack):
         reach = 1.0 + max(float(np.abs(joint["xyz"]).max()) for joint in joints)
         scale = reach if hard else 1.0
         limits = [
-            (str(kind), scale * (typed.number(random, -2, 1) if random.random() < 0.5 else float(random.uniform(0.05, 2.0))))
+            (
+                str(kind),
+                scale * (typed.number(random, -2, 1) if random.random() < 0.5 else float(random.uniform(0.05, 2.0))),
+            )
             for kind in random.choice(KINDS, random.integers(1, 3), replace=False)
         ]
         call = str(random.choice(list(CALLS)))
