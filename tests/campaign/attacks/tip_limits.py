@@ -18,7 +18,8 @@ RATED = (
 )
 CALLS = {
     "plan": "motion = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], limits=limits).trajectory",
-    "retime": "motion = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], limits=free).retime(limits).trajectory",
+    "retime": "plan = bik.plan_point_to_point(robot, start_q=q[0], end_q=q[1], limits=free)\n"
+    "motion = plan.retime(limits).trajectory",
     "timing": "motion = bik.time_optimal(q, limits, robot=robot)",
 }
 RELATIVE = 1e-7  # rounding of Jacobians by numpy
