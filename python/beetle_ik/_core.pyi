@@ -3600,8 +3600,9 @@ def time_optimal(
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
     The method is reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of
-    only at grid points: velocity and acceleration limits hold at every instant, on any grid. Jerk limits are kept by
-    smoothing the motion in time: all limits hold, but the result is then slower than the optimum.
+    only at grid points: velocity and acceleration limits hold at every instant, on any grid. With jerk limits the squared rate
+    of a smooth clock along the path is a spline, and the fastest one within all limits is found by a barrier method, after
+    Debrouwere et al. (2013).
 
     Args:
         waypoints_q: (k, n), joint positions of the waypoints (rad, m).
@@ -3612,7 +3613,7 @@ def time_optimal(
         blend: for a polyline: corners are rounded from this distance before to this distance after them (in joint space, at
             most half a line); None or 0: the joints stop at each corner.
         gridpoints: number of points at which the acceleration along the path may change; None: refined until the duration
-            no longer improves.
+            no longer improves. With jerk limits the spline has its own knots.
         start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
         joint_names: n names; None: "q1", "q2" and so on.
         tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
@@ -3805,7 +3806,8 @@ def plan_along_path(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it
-            (rad). It determines how many points of the path the motion passes. None: a thousandth of the path's extent,
+            (rad). It determines how many points of the path the motion passes, and how far it may round corners. None: a
+            thousandth of the path's extent,
             plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
             has tolerances, the accuracy is part of them and must not exceed the smallest.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
@@ -3956,7 +3958,7 @@ class Plan:
         Raises:
             TypeError: limits that are no `Limits`.
             InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
-                acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
+                acceleration jumps, or a margin, or what is to be kept on the way, that the motion timed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
 
