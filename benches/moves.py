@@ -30,6 +30,7 @@ ACCELERATION = 5.0
 
 
 def run(name: str, count: int) -> None:
+    """Plans `count` programs of one arm, and prints how they came out."""
     robot = bik.Robot.named(name)
     limits = {"velocity": robot.velocity_limit, "acceleration": np.full(robot.dof, ACCELERATION)}
     outcomes: Counter[str] = Counter()

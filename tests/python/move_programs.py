@@ -98,11 +98,11 @@ def moves_of(program: list[dict[str, Any]]) -> list[bik.moves.Move]:
 
 
 def draw(robot: bik.Robot, start: Array, count: int, random: np.random.Generator) -> list[dict[str, Any]]:
-    """A program of `count` moves that the arm probably makes: round numbers as often as reals, blends as often as stops."""
+    """A program of `count` moves that the arm probably makes, with round numbers as often as reals."""
     lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in (robot.lower, robot.upper))
     program: list[dict[str, Any]] = []
     pose = robot.fk(start)
-    for i in range(count):
+    for _ in range(count):
         kind = random.choice(["joints", "line", "line", "line", "arc", "wait"])
         if kind == "joints":
             q = start + 0.3 * random.uniform(lower - start, upper - start)
@@ -195,11 +195,15 @@ def faults(
                 found.append(f"move {i} ends at another pose")
             start, blend_before = pose, blend
             continue
-        elif move["kind"] == "wait":
+        if move["kind"] == "wait":
             if abs(report.end - report.start - move["seconds"]) > 1e-9 or np.abs(qd[on]).max(initial=0.0) > 1e-9:
                 found.append(f"move {i} does not rest")
         else:
-            curve = line(start, move["pose"]) if move["kind"] == "line" else arc(start, move["via"], move["pose"], move.get("angle"))
+            curve = (
+                line(start, move["pose"])
+                if move["kind"] == "line"
+                else arc(start, move["via"], move["pose"], move.get("angle"))
+            )
             begin, end = curve.at(np.array([0.0, curve.length]))
             near = [np.linalg.norm(poses[:, :3, 3] - corner, axis=1) for corner in (begin, end)]
             on_curve = on & (near[0] >= blend_before) & (near[1] >= blend)
@@ -208,7 +212,9 @@ def faults(
                 found.append(f"move {i} is {distances[on_curve].max()} m off its path")
             if angles[on_curve].max(initial=0.0) > TURNED:
                 found.append(f"move {i} is {angles[on_curve].max()} rad off its turn")
-            strayed = on & ~on_curve & (distances > ON_PATH) & (near[0] > blend_before + 1e-9) & (near[1] > blend + 1e-9)
+            strayed = (
+                on & ~on_curve & (distances > ON_PATH) & (near[0] > blend_before + 1e-9) & (near[1] > blend + 1e-9)
+            )
             if strayed.any():
                 found.append(f"move {i} leaves the ball of its blend")
             if blend == 0.0 and np.abs(fk(np.asarray(trajectory.at(report.end)[0])[None])[0] - curve.end).max() > 1e-6:

@@ -55,7 +55,9 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
         try:
             plan = bik.plan_moves(robot, moves_of(program), start_q=start, limits=given)
         except bik.InvalidInputError as error:
-            assert "move " in str(error)
+            said = str(error)
+            if "move " not in said:
+                raise
             continue
         made += 1
         assert plan.success
@@ -107,9 +109,9 @@ def test_a_speed_that_joints_cannot_reach_is_no_error() -> None:
 
 def test_a_full_circle_comes_back() -> None:
     start = shifted()
-    centre = start[:3, 3] + [0.0, 0.05, 0.0]
+    centre = start[:3, 3] + np.array([0.0, 0.05, 0.0])
     end = shifted(y=0.1)
-    via = centre + [0.05, 0.0, 0.0]
+    via = centre + np.array([0.05, 0.0, 0.0])
     program = [{"kind": "arc", "via": via, "pose": end, "angle": 2 * np.pi, "speed": 0.1}]
     assert planned(program) == []
     plan = bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=LIMITS)
@@ -166,7 +168,9 @@ def test_the_first_joint_move_suits_the_line_after_it() -> None:
         try:
             plan = bik.plan_moves(narrow, [Joints(first), Line(second)], start_q=HOME, limits=LIMITS)
         except bik.InvalidInputError as error:
-            assert "move " in str(error)
+            said = str(error)
+            if "move " not in said:
+                raise
             continue
         found += 1
         q = plan.trajectory.sample(0.01)[1]
@@ -184,22 +188,26 @@ WRONG: list[tuple[list[Any], str]] = [
     ([Joints(HOME * np.nan)], "joint positions of move 0 must be finite, but joint 'shoulder_pan_joint' is NaN"),
     (
         [Arc(UR5.fk(HOME)[:3, 3], shifted(y=0.1))],
-        "move 0: an arc needs three points, and its start is via: for a full circle give another point of it as the end, and "
-        "the angle",
+        "move 0: an arc needs three points, and its start is via: for a full circle give another point of it as "
+        "the end, and the angle",
     ),
     (
         [Arc(shifted(x=0.1)[:3, 3], UR5.fk(HOME))],
-        "move 0: an arc needs three points, and its start is its end: for a full circle give another point of it as the end, "
-        "and the angle",
+        "move 0: an arc needs three points, and its start is its end: for a full circle give another point of it "
+        "as the end, and the angle",
     ),
     (
         [Line(shifted(y=0.1), blend=0.01), Line(shifted(y=0.1))],
         "move 0: its blend has no room, because move 1 ends where it begins: leave that out, or give no blend",
     ),
     (
-        [Line(shifted(y=0.1), blend=0.06, name="a"), Line(shifted(y=0.1, z=0.1), blend=0.06, name="b"), Line(shifted())],
-        "move 1 'b': its blend of 0.06 m, with the blend at its other end, does not fit into move 1 'b', which is 0.1000 m long: "
-        "make the blend smaller",
+        [
+            Line(shifted(y=0.1), blend=0.06, name="a"),
+            Line(shifted(y=0.1, z=0.1), blend=0.06, name="b"),
+            Line(shifted()),
+        ],
+        "move 1 'b': its blend of 0.06 m, with the blend at its other end, does not fit into move 1 'b', which is "
+        "0.1000 m long: make the blend smaller",
     ),
 ]
 
@@ -212,14 +220,14 @@ def test_wrong_moves_are_named(program: list[Any], message: str) -> None:
 
 
 def test_a_line_out_of_reach_says_where() -> None:
-    with pytest.raises(Invalid, match="^move 0 'out' cannot be reached: 0.* m along it, no solution") as caught:
+    with pytest.raises(Invalid, match=r"^move 0 'out' cannot be reached: 0.* m along it, no solution") as caught:
         bik.plan_moves(UR5, [Line(shifted(x=-0.9), name="out")], start_q=HOME, limits=LIMITS)
     assert "out of reach" in str(caught.value)
 
 
 def test_a_joint_that_meets_its_limit_is_named() -> None:
     narrow = UR5.with_limits(lower=HOME - 0.2, upper=HOME + 0.2)
-    with pytest.raises(Invalid, match="a motion along move 0 was not found: .* joint 'shoulder_pan_joint' would have"):
+    with pytest.raises(Invalid, match=r"a motion along move 0 was not found: .* joint 'shoulder_pan_joint' would have"):
         bik.plan_moves(narrow, [Line(shifted(y=0.3))], start_q=HOME, limits=LIMITS)
 
 
@@ -227,14 +235,14 @@ def test_a_line_through_an_obstacle_is_refused_by_name() -> None:
     thick = UR5.with_capsules(radius=0.04)
     tip = shifted(z=-0.1)[:3, 3]
     ball = bik.obstacles.Sphere(tip - [0.0, 0.0, 0.05], 0.04)
-    with pytest.raises(Invalid, match="a motion along move 0 'in' was not found: .* obstacle 0 .Sphere."):
+    with pytest.raises(Invalid, match=r"a motion along move 0 'in' was not found: .* obstacle 0 .Sphere."):
         bik.plan_moves(thick, [Line(shifted(z=-0.1), name="in")], start_q=HOME, limits=LIMITS, obstacles=[ball])
 
 
 def test_a_joint_move_goes_around_an_obstacle() -> None:
     thick = UR5.with_capsules(radius=0.04)
-    there = HOME + [1.5, 0.0, 0.0, 0.0, 0.0, 0.0]
-    post = bik.obstacles.Sphere(thick.fk(HOME + [0.75, 0.0, 0.0, 0.0, 0.0, 0.0])[:3, 3], 0.05)
+    there = HOME + 1.5 * np.eye(6)[0]
+    post = bik.obstacles.Sphere(thick.fk(HOME + 0.75 * np.eye(6)[0])[:3, 3], 0.05)
     program = [Joints(there, name="over"), Line(thick.fk(there) @ bik.pose([0.0, 0.0, -0.05]), speed=0.1)]
     plan = bik.plan_moves(thick, program, start_q=HOME, limits=LIMITS, obstacles=[post])
     assert plan.success
@@ -248,7 +256,7 @@ def test_what_is_to_be_kept_holds_or_is_refused() -> None:
     plan = bik.plan_moves(UR5, across, start_q=HOME, limits=LIMITS, keep=flat)
     assert plan.success
     assert plan.kept[0][1][2] < 2e-4
-    with pytest.raises(Invalid, match="a motion along move 0 'down' was not found: .* to be kept"):
+    with pytest.raises(Invalid, match=r"a motion along move 0 'down' was not found: .* to be kept"):
         bik.plan_moves(UR5, [Line(shifted(z=-0.1), name="down")], start_q=HOME, limits=LIMITS, keep=flat)
 
 
@@ -263,5 +271,5 @@ def test_moves_show_what_they_were_made_of() -> None:
     assert repr(Line(np.eye(4), speed=0.1)) == "moves.Line(pose at [0.0, 0.0, 0.0], speed=0.1)"
     assert Joints([0.0, 1.0], blend=0.1) == Joints([0.0, 1.0], blend=0.1)
     assert Joints([0.0, 1.0]) != Joints([0.0, 1.5])
-    with pytest.raises(Invalid, match="moves.1. must be one of beetle_ik.moves, got"):
+    with pytest.raises(Invalid, match=r"moves.1. must be one of beetle_ik.moves, got"):
         bik.plan_moves(UR5, [SLOW, "down"], start_q=HOME, limits=LIMITS)  # type: ignore[list-item]

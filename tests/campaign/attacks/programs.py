@@ -40,7 +40,7 @@ class Programs(Attack):
 
     name = "programs"
     promise = "Each move of a program is made as asked, within the limits, or refused by its name"
-    page = "docs/moves.md"
+    page = "moves"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         joints = arms.arm(random, hard, (6, 7))
@@ -142,7 +142,7 @@ class Programs(Attack):
             at, before = end, blend
         return SAMPLES
 
-    def judge_refusal(self, case: Case, error: Exception) -> None:  # noqa: ARG002
+    def judge_refusal(self, case: Case, error: Exception) -> None:
         if "'m" not in str(error) and "takes no time" not in str(error):
             raise BrokenError("a program is refused, and no move is named", error)
 

@@ -93,6 +93,9 @@ where
 ///     q_or_pose: joint positions (n,) (rad, m), or a pose (4, 4) of the tip, whose configuration the planner chooses.
 ///     blend: radius (m) about the end inside which the motion may round the corner to the next move; 0: it stops there.
 ///     name: name in messages and reports.
+///
+/// Raises:
+///     InvalidInputError: q_or_pose of another shape, or no rigid transform.
 #[pyclass(name = "Joints", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyJoints;
 
@@ -145,6 +148,9 @@ impl PyJoints {
 ///         each radian. None: as fast as the limits allow.
 ///     blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
 ///     name: name in messages and reports.
+///
+/// Raises:
+///     InvalidInputError: a pose of another shape, or no rigid transform.
 #[pyclass(name = "Line", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyLine;
 
@@ -188,6 +194,9 @@ impl PyLine {
 ///     angle: angle (rad) after which the arc ends, on the circle through its start, `via` and the position of `pose`, with
 ///         the orientation of `pose`; 2 pi is a full circle. None: it ends at `pose`.
 ///     name: name in messages and reports.
+///
+/// Raises:
+///     InvalidInputError: a point or a pose of another shape, or no rigid transform.
 #[pyclass(name = "Arc", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyArc;
 

@@ -42,7 +42,7 @@ def moves(
     program: Annotated[
         Path,
         typer.Argument(
-            help='A JSON file: a list of moves, such as {"move": "line", "to": [x, y, z, roll, pitch, yaw], "speed": 0.05}.'
+            help='A JSON file: a list of moves, such as {"move": "line", "to": [0.4, 0, 0.2, 0, 0, 0], "speed": 0.05}.'
         ),
     ],
     robot: RobotName = None,
@@ -66,7 +66,7 @@ def moves(
 ) -> None:
     """Plan a program of joint moves, lines, arcs and waits.
 
-    Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or a dict {"q": [...]} of joint
+    Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or {"q": [...]}, joint
     positions; "via" of an arc is a point.
     """
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
