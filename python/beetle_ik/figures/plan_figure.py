@@ -109,7 +109,7 @@ def draw(figure: Figure, plan: Plan) -> None:
     for axes, label, values in zip(panels[:-1], labels, plan.trajectory.at(time), strict=True):
         draw_joints(axes, time, values, plan.trajectory.joint_names)
         axes.set_ylabel(label)
-    draw_tip_speeds(panels[-1], plan.trajectory, plan.robot, _SAMPLES)
+    draw_tip_speeds(panels[-1], plan, _SAMPLES)
     for axes in panels:
         axes.set_xlim(0.0, plan.trajectory.duration)
     panels[-1].set_xlabel("time [s]")

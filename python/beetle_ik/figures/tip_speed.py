@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,10 +12,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from .._core import Robot, Trajectory
+    from .._core import Plan, Robot
 
 _DASHES = ("-", "--", ":", "-.")  # one for each tip
 _HEADROOM = 1.1  # height of an axis over its data
+_FAR_LIMIT = 3.0  # a limit beyond this multiple of the speeds is left out
 _STILL = 1e-9  # m/s, rad/s: height of an axis without motion
 
 
@@ -28,20 +29,38 @@ def tip_speeds(
     return np.linalg.norm(twists[..., :3], axis=-1), np.linalg.norm(twists[..., 3:], axis=-1)
 
 
-def draw_tip_speeds(axes: Axes, trajectory: Trajectory, robot: Robot, samples: int) -> None:
-    """Draws both speeds of each tip; a limit goes onto the axis of its speed, as `axhline`."""
-    time = np.linspace(0.0, trajectory.duration, samples)
-    q, qd, _ = trajectory.at(time)
+def draw_tip_speeds(axes: Axes, plan: Plan, samples: int) -> None:
+    """Draws both speeds of each tip, with their limits."""
+    time = np.linspace(0.0, plan.trajectory.duration, samples)
+    q, qd, _ = plan.trajectory.at(time)
+    moving, turning = tip_speeds(plan.robot, q, qd)
     beside = axes.twinx()
-    names = robot.tips if len(robot.tips) > 1 else ("tip",)
-    panels = ((axes, "tip speed [m/s]", (BLUE, GREEN)), (beside, "tip turn speed [rad/s]", (VERMILION, ORANGE)))
-    for (panel, label, colors), speeds in zip(panels, tip_speeds(robot, q, qd), strict=True):
-        for i, name in enumerate(names):
-            panel.plot(time, speeds[:, i], color=colors[i % 2], linestyle=_DASHES[i % 4], label=name)
-        panel.set_ylim(0.0, _HEADROOM * max(float(speeds.max()), _STILL))
-        panel.set_ylabel(label, color=colors[0])
-        panel.tick_params(axis="y", colors=colors[0])
+    _draw(axes, time, moving, plan.robot, plan.limits.tip_speed, "tip speed [m/s]", (BLUE, GREEN))
+    _draw(beside, time, turning, plan.robot, plan.limits.tip_turn_speed, "tip turn speed [rad/s]", (VERMILION, ORANGE))
     beside.grid(visible=False)
     beside.spines["right"].set_visible(True)
-    if len(names) > 1:
+    if len(plan.robot.tips) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.12, 1.0), fontsize="small")
+
+
+def _draw(
+    axes: Axes,
+    time: NDArray[np.float64],
+    speeds: NDArray[np.float64],
+    robot: Robot,
+    limits: float | dict[str, float] | None,
+    label: str,
+    colors: tuple[str, str],
+) -> None:
+    """Draws the speeds (k, tips) on one axis, and their limits as thin lines if they are not far above."""
+    top = max(float(speeds.max()), _STILL)
+    for i, name in enumerate(robot.tips):
+        line: dict[str, Any] = {"color": colors[i % len(colors)], "linestyle": _DASHES[i % len(_DASHES)]}
+        axes.plot(time, speeds[:, i], label=name, **line)
+        limit = limits.get(name) if isinstance(limits, dict) else limits
+        if limit is not None and limit <= _FAR_LIMIT * float(speeds.max()):
+            axes.axhline(limit, linewidth=0.6, **line)
+            top = max(top, limit)
+    axes.set_ylim(0.0, _HEADROOM * top)
+    axes.set_ylabel(label, color=colors[0])
+    axes.tick_params(axis="y", colors=colors[0])
