@@ -634,10 +634,24 @@ class Limits:
         lower, upper: position limits (rad, m).
         velocity: velocity limits (rad/s, m/s).
         acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
+        tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
+            origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
+            limit. Planned motions keep them at every instant, not only at samples.
 
-    Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+    Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
     are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
     no limit is ignored.
+
+    For example, a cobot whose tool moves at 0.25 m/s at most:
+
+        >>> limits = bik.Limits(velocity=2.0, acceleration=8.0, tip_speed=0.25)
+        >>> plan = bik.plan_point_to_point(bik.Robot.named("ur5e"), start_q=[0, -1.5, 1.5, 0, 0, 0], end_q=[1, -1, 1, 0, 0, 0], limits=limits)
+        >>> plan.success
+        True
+
+    Raises:
+        LimitError: a negative limit; a limit of a tip that is not positive.
+        InvalidInputError: NaN, no number, or a dict that is not by tip.
     """
 
     def __new__(
@@ -648,6 +662,9 @@ class Limits:
         velocity: _LimitIn | None = None,
         acceleration: _LimitIn | None = None,
         jerk: _LimitIn | None = None,
+        tip_speed: float | Mapping[str, float] | None = None,
+        tip_acceleration: float | Mapping[str, float] | None = None,
+        tip_turn_speed: float | Mapping[str, float] | None = None,
     ) -> Limits: ...
     @property
     def lower(self) -> _LimitOut:
@@ -664,6 +681,15 @@ class Limits:
     @property
     def jerk(self) -> _LimitOut:
         """Jerk limits (rad/s^3, m/s^3), as given."""
+    @property
+    def tip_speed(self) -> float | dict[str, float] | None:
+        """Limits of the speed of tips (m/s), as given."""
+    @property
+    def tip_acceleration(self) -> float | dict[str, float] | None:
+        """Limits of the acceleration of tips (m/s^2), as given."""
+    @property
+    def tip_turn_speed(self) -> float | dict[str, float] | None:
+        """Limits of how fast tips turn (rad/s), as given."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- solvers ------------------------------------------------------------------------------------
@@ -690,6 +716,7 @@ class Status(IntEnum):
     - `ROTATION_GIVEN_UP`: The position is within its tolerance, and the rotation as near as the search found; a configuration that meets both was not found.
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
+    - `LEVEL_GIVEN_UP`: The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.
     """
 
     SOLVED = 0
@@ -711,6 +738,7 @@ class Status(IntEnum):
     ROTATION_GIVEN_UP = 16
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
+    LEVEL_GIVEN_UP = 19
 
 @final
 class APPS:
@@ -1408,6 +1436,9 @@ class Task:
     @property
     def region(self) -> _Array | None:
         """Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box."""
+    @property
+    def level(self) -> int:
+        """Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these allow."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1425,6 +1456,8 @@ class Pose(Task):
             comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
             "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
             or a region.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1435,6 +1468,7 @@ class Pose(Task):
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
         first: str | None = None,
+        level: int = 0,
     ) -> Pose: ...
     @property
     def first(self) -> str | None:
@@ -1452,6 +1486,8 @@ class Position(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1461,6 +1497,7 @@ class Position(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Position: ...
 
 @final
@@ -1473,6 +1510,8 @@ class Orientation(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1482,6 +1521,7 @@ class Orientation(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Orientation: ...
 
 @final
@@ -1496,6 +1536,8 @@ class Pointing(Task):
         tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
             infinite on open sides. See `Task`.
+        level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+            allow. Tasks of the same level share the error.
     """
 
     def __new__(
@@ -1506,6 +1548,7 @@ class Pointing(Task):
         tolerance: ArrayLike | None = None,
         tool: _Pose | None = None,
         region: ArrayLike | None = None,
+        level: int = 0,
     ) -> Pointing: ...
     @property
     def axis(self) -> _Array:
@@ -1616,7 +1659,8 @@ def solve(
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
             "right_tool") gives the pose of the second tip in the frame of the first.
-        task: part of the target that counts, one of `tasks`, or a dict for several tips; None: all of it.
+        task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
+            not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
             For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
             search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
@@ -1778,7 +1822,7 @@ def solve_all(
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
-            configurations.
+            configurations; tasks of several tips of different levels, which all solutions would meet.
         LimitError: limits that contradict each other.
 
     For example:
@@ -2968,6 +3012,7 @@ class Step:
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
         HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
         IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
     @property
@@ -3384,7 +3429,8 @@ class Keep:
             with an infinite one, or of weight 0, are free. None: all of the target, within 1e-6.
 
     Raises:
-        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep.
+        InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep; a task
+            with a level, since what is kept comes before all targets.
 
     For example, a hand that stays within 1 cm of the plane z = 0.3 m:
 
@@ -3576,12 +3622,14 @@ def time_optimal(
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
     tolerance: float | ArrayLike | None = None,
+    robot: Robot | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
     The method is reachability analysis (Pham and Pham 2018), with acceleration limits imposed on whole segments instead of
-    only at grid points: velocity and acceleration limits hold at every instant, on any grid. Jerk limits are kept by
-    smoothing the motion in time: all limits hold, but the result is then slower than the optimum.
+    only at grid points: velocity and acceleration limits hold at every instant, on any grid. With jerk limits the squared rate
+    of a smooth clock along the path is a spline, and the fastest one within all limits is found by a barrier method, after
+    Debrouwere et al. (2013).
 
     Args:
         waypoints_q: (k, n), joint positions of the waypoints (rad, m).
@@ -3592,12 +3640,14 @@ def time_optimal(
         blend: for a polyline: corners are rounded from this distance before to this distance after them (in joint space, at
             most half a line); None or 0: the joints stop at each corner.
         gridpoints: number of points at which the acceleration along the path may change; None: refined until the duration
-            no longer improves.
+            no longer improves. With jerk limits the spline has its own knots.
         start_speed, end_speed: Euclidean norm of the joint velocity at the ends (rad/s, m/s).
         joint_names: n names; None: "q1", "q2" and so on.
         tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
             parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
             is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+        robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
+            `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
     Equal consecutive rows, as a recording has at rest, are one waypoint.
 
@@ -3608,7 +3658,8 @@ def time_optimal(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline without `tolerance`, limits of tips
+            without `robot`, or limits of a tip on a floating base.
 
     For example:
 
@@ -3785,7 +3836,8 @@ def plan_along_path(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
         accuracy: largest distance of the tip from the path (m), also between points, and largest rotation from it
-            (rad). It determines how many points of the path the motion passes. None: a thousandth of the path's extent,
+            (rad). It determines how many points of the path the motion passes, and how far it may round corners. None: a
+            thousandth of the path's extent,
             plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
             has tolerances, the accuracy is part of them and must not exceed the smallest.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
@@ -3939,7 +3991,7 @@ class Plan:
         Raises:
             TypeError: limits that are no `Limits`.
             InfeasibleError: a plan with violations, one of `plan_moves`, a path outside the position limits, jerk limits on a motion whose
-                acceleration jumps, or a margin, or what is to be kept on the way, that the motion smoothed for jerk limits does not keep.
+                acceleration jumps, or a margin, or what is to be kept on the way, that the motion timed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
 
@@ -4066,7 +4118,7 @@ class MoveReport:
         """When it ends (s)."""
     @property
     def speed(self) -> float:
-        """Largest speed of the tip on it (m/s); of a turn on the spot 0.1 m for each radian."""
+        """Largest speed of the tip on it (m/s), between its blends; of a turn on the spot 0.1 m for each radian."""
     @property
     def bound_by(self) -> tuple[SpeedBound, ...]:
         """What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in

@@ -66,6 +66,10 @@ SPOILED = {
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),
     "two_hands": ("solution = Changed(solution, q=solution.q + 1e-4)", "position_error is not the error"),
+    "levels": (
+        "solution = Changed(solution, q=solution.q + 1.0)",
+        "q is outside the limits",
+    ),
     "self_motions": (
         "curves = [Changed(curve, q=curve.q + 1e-6) for curve in curves]",
         "a configuration of the curve misses the target",
@@ -194,6 +198,18 @@ SPOILED = {
     "own_points": (
         "kept = kept[1:]\nremoved += 1",
         "a point is kept, or taken out, against the padding",
+    ),
+    "surface_line": (
+        "poses = poses.copy()\nposes[:, :3, 3] += 0.01",
+        "the tool points beside the surface",
+    ),
+    "gcode_moves": (
+        "program = bik.paths.from_gcode(text.replace('G0 X0', 'G0 X1'))",
+        "a move ends at another point",
+    ),
+    "gcode": (
+        "poses = poses * nan",
+        "a program was read whose poses are not finite",
     ),
     "urdf": (
         "pose = pose * nan",

@@ -69,6 +69,7 @@ ARM = IIWA.with_capsules(radius=0.05)
 PLANAR = bik.Robot.planar([1, 1, 1])
 ONE_JOINT = bik.Robot.from_urdf(URDF)
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
+TABLE = bik.obstacles.Box((0, 0, 0), (0.4, 0.4, 0.2))
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 QUICK = {"stop": bik.Stop(max_evaluations=100)}
@@ -188,6 +189,14 @@ NEEDED: dict[str, dict[str, Any]] = {
     "obstacles.nearest": {"robot": ARM, "q": START},
     "paths.circle": {**PLACED, "diameter": 0.1},
     "paths.from_function": {"function": lambda t: (t, 0, 0), "duration": 1.0},
+    "paths.from_gcode": {"file": "G0 X0 Y0 Z0\nG0 X1"},
+    "paths.GcodeProgram.": {".": bik.paths.from_gcode("G0 X0 Y0 Z0\nG0 X1")},
+    "paths.GcodeProgram.path": {"rapid_speed": 0.1},
+    "paths.Seam.": {".": bik.paths.raster(TABLE, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0]},
+    "paths.Seam.path": {"speed": 0.1},
+    "paths.join": {"seams": bik.paths.raster(TABLE, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))},
+    "paths.on_surface": {"surface": TABLE, "points": [(0, 0, 0.1), (0.1, 0, 0.1)]},
+    "paths.raster": {"surface": TABLE, "spacing": 0.1, "direction": (1, 0, 0), "side": (0, 0, 1)},
     "paths.from_samples": {"time": [0, 1], "positions_or_poses": [(0, 0, 0), (1, 0, 0)]},
     "paths.hypotrochoid": {**PLACED, "outer_radius": 0.3, "inner_radius": 0.1, "distance": 0.1},
     "paths.letter_m": {**PLACED, "width": 0.1, "height": 0.1},
@@ -282,6 +291,9 @@ MADE_BY_THE_LIBRARY = [
     "Violation",
     "distributed.BatchArrays",
     "papers.PlanarPosture",
+    "paths.GcodeMove",
+    "paths.GcodeProgram",
+    "paths.Seam",
     "obstacles.Nearest",
 ]
 

@@ -288,7 +288,9 @@ SHORT: dict[str, str] = {
     ),
     **dict.fromkeys(
         ["InverseReachabilityMap.query", "InverseReachabilityMap.on_floor", "InverseReachabilityMap.plot",
-         "ReachabilityMap.inverse", "ReachabilityMap.plot", "ReachabilityMap.poses", "ReachabilityMap.reached"],
+         "ReachabilityMap.inverse", "ReachabilityMap.plot", "ReachabilityMap.poses", "ReachabilityMap.reached",
+         "paths.GcodeProgram.path", "paths.GcodeProgram.seams", "paths.Seam.path", "paths.from_gcode", "paths.join",
+         "paths.on_surface", "paths.raster"],
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,

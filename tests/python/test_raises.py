@@ -76,6 +76,7 @@ CROSSED = bik.Limits(lower=1.0, upper=-1.0, velocity=1.0, acceleration=2.0)
 WIDE = bik.Limits(lower=-50.0, upper=50.0)
 WITHIN = bik.tasks.Position(region=((0.2, -0.3, 0.3), (0.6, 0.3, 0.7)))
 REGION = ((-0.5, -0.5, 0.0), (0.5, 0.5, 0.0))
+SLAB = bik.obstacles.Box((0, 0, 0), (0.4, 0.4, 0.2))
 LINE, LINE_XY = [[0.4, 0.0, 0.5], [0.4, 0.1, 0.5]], [[0.8, 0.1, 0.0], [0.7, 0.3, 0.0]]
 CIRCLE = bik.paths.circle(center=(0.4, 0.0, 0.5), diameter=0.1, duration=1.0)
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], np.array([Q, Q + 0.1]))
@@ -214,6 +215,7 @@ ROWS: list[Row] = [
     ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0]), "target: expected a pose (4, 4) or a position (3,), got shape (2,)"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, np.nan, 0.0]), "target must be finite, but coordinate y is NaN"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0, 0.3], api.tasks.Pointing()), "task Pointing needs a target pose (4, 4), got a position (3,)"),
+    ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0, 0.3], api.tasks.Position(level=1)), "what is kept comes before all targets, at every instant: leave out the level of its task, 1"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0, 0.3], api.tasks.Position(tolerance=[np.inf] * 3)), "nothing would be kept: all tolerances of the task are infinite, or all its weights zero"),
     ("upright", Invalid, lambda at: api.upright(PANDA, axis=(0, 0, 0)), "the length of axis must be positive, got 0.0"),
     ("upright", Invalid, lambda at: api.upright(PANDA, direction=(0, 0, 0)), "the length of direction must be positive, got 0.0"),
@@ -281,6 +283,7 @@ ROWS: list[Row] = [
     ("solve", Limit, lambda at: api.solve(PANDA, [0.4, 0.0, 0.5], limits=api.Limits(lower=1.0, upper=-1.0)), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("solve", Invalid, lambda at: api.solve(BARE, [0.4, 0.0, 0.5], obstacles=[BALL]), f"robot 'iiwa14' {NO_CAPSULES}"),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, np.eye(3)), 'target: expected a pose (4, 4) or a position (3,), got shape (3, 3)'),
+    ("solve_all", Invalid, lambda at: api.solve_all(PAIR, dict.fromkeys(PAIR.tips, np.eye(4)), task={"left_tool": api.tasks.Pose(level=1)}), "all solutions meet all targets, so levels from 0 to 1 have no effect: give all tasks one level, or solve for one configuration, which meets them in their order"),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, [np.nan, 0.0, 0.0]), 'target must be finite, but coordinate x is NaN'),
     ("solve_all", Limit, lambda at: api.solve_all(PANDA, [0.4, 0.0, 0.5], limits=api.Limits(lower=1.0, upper=-1.0)), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("solve_all", Invalid, lambda at: api.solve_all(PANDA, 2.0 * np.eye(4)), 'target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)'),
@@ -327,6 +330,14 @@ ROWS: list[Row] = [
     ("vision.locate_arm", Invalid, lambda at: api.vision.locate_arm(np.zeros((9, 9)), PANDA, Q), "robot 'panda' is not a planar arm: all joints must rotate about z"),
     ("vision.locate_arm", Invalid, lambda at: api.vision.locate_arm(np.zeros(5), PLANAR, np.zeros(3)), 'image: expected shape (rows, columns), or (rows, columns, 3 or 4), of numbers, got (5,) of float64'),
     ("vision.locate_arm", Missing, lambda at: api.vision.locate_arm(np.zeros((9, 9)), at.without("skimage").value(PLANAR), np.zeros(3)), "locate_arm needs scikit-image: pip install 'beetle-ik[vision]'"),
+    ("paths.on_surface", Invalid, lambda at: api.paths.on_surface(SLAB, [(0, 0, 0.1), (0, 0, 1.1)]), "points[1] is 1 m from the surface, farther than within=0.06: give a larger within=, or move it nearer"),
+    ("paths.on_surface", Missing, lambda at: api.paths.on_surface(at.without("trimesh").value(SLAB), [(0, 0, 0.1), (0.1, 0, 0.1)]), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.raster", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0)), "side= is needed: the surface is closed; it is the direction from the part to the tool"),
+    ("paths.raster", Missing, lambda at: api.paths.raster(at.without("trimesh").file("part.stl", ""), spacing=0.1, direction=(1, 0, 0)), "a surface from a file needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.join", Invalid, lambda at: api.paths.join([]), "seams: at least one is needed, got none"),
+    ("paths.Seam.path", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0].path(0.0), "speed must be positive and finite, got 0"),
+    ("paths.from_gcode", Invalid, lambda at: api.paths.from_gcode(at.file("part.nc", "G81 X1")), "{folder}/part.nc: line 1: G81 is not read: G0 to G3, G17 to G21, G90 and G91 are"),
+    ("paths.GcodeProgram.path", Invalid, lambda at: api.paths.from_gcode("G0 X0 Y0 Z0\nG0 X1").path(0.0), "rapid_speed must be positive and finite, got 0"),
     ("Plan.retime", TypeError, lambda at: PLAN.retime(1.0), 'limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got 1.0'),
     ("Plan.retime", Infeasible, lambda at: PLAN.retime(api.Limits(upper=[0.05, 1.7, 2.8, -0.1, 2.8, 3.7, 2.8], velocity=1.0, acceleration=2.0)), "infeasible: the path of the plan leaves the limits: highest position of joint 'panda_joint1' is 0.1000 rad, allowed 0.05000 rad"),
     ("Plan.retime", Unsupported, lambda at: PLAN.retime(VARYING), 'retime cannot honour time-varying velocity limits: give numbers'),

@@ -37,7 +37,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("manipulability", &["kinematics", "robot"]),
     ("calibration", &["robot", "obstacle"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
-    ("constraint", &["kinematics", "robot", "objective", "obstacle", "task"]),
+    ("constraint", &["kinematics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
@@ -62,7 +62,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning", "map"],
     ),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
-    ("timing", &["robot", "trajectory", "limits"]),
+    ("timing", &["robot", "trajectory", "limits", "constraint"]),
     (
         "plan",
         &[

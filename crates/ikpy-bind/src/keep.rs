@@ -33,7 +33,8 @@ use crate::wording::spelt;
 ///         with an infinite one, or of weight 0, are free. None: all of the target, within 1e-6.
 ///
 /// Raises:
-///     InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep.
+///     InvalidInputError: wrong shape, NaN; a task that needs an orientation with a position as target; nothing to keep; a task
+///         with a level, since what is kept comes before all targets.
 ///
 /// For example, a hand that stays within 1 cm of the plane z = 0.3 m:
 ///

@@ -212,7 +212,7 @@ impl Unreached {
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
-///         configurations.
+///         configurations; tasks of several tips of different levels, which all solutions would meet.
 ///     LimitError: limits that contradict each other.
 ///
 /// For example:

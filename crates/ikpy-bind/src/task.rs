@@ -7,7 +7,7 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::convert::{Array, copied, corners, point, pose_array, rigid, row, scalar_or_vector, summary, table};
+use crate::convert::{Array, copied, corners, count, point, pose_array, rigid, row, scalar_or_vector, summary, table};
 use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::{NewArguments, list_text};
@@ -59,6 +59,12 @@ impl PyTask {
         self.core.region.as_ref().map(corners).transpose()
     }
 
+    /// Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these allow.
+    #[getter]
+    fn level(&self) -> u32 {
+        self.core.level
+    }
+
     fn __repr__(&self) -> String {
         let axis = match &self.core.kind {
             TaskKind::Pointing { axis } => Some(format!("axis={}", list_text(axis))),
@@ -73,6 +79,7 @@ impl PyTask {
             self.core.tool.as_ref().map(matrix),
             self.core.region.as_ref().map(region),
             self.core.first.map(|first| format!("first='{first}'")),
+            (self.core.level != 0).then(|| format!("level={}", self.core.level)),
         ];
         let given: Vec<_> = options.into_iter().flatten().collect();
         format!("tasks.{}({})", self.core.kind.name(), given.join(", "))
@@ -94,6 +101,9 @@ impl PyTask {
         if let Some(first) = self.core.first {
             options.set_item("first", first.name())?;
         }
+        if self.core.level != 0 {
+            options.set_item("level", self.core.level)?;
+        }
         Ok((PyTuple::empty(py), options))
     }
 }
@@ -101,23 +111,24 @@ impl PyTask {
 /// An optional argument.
 type Argument<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// Makes an instance of a task's class, which adds no fields to kind, weights, tolerance, tool and region.
-fn instance<C>(kind: TaskKind, options: [Argument<'_, '_>; 4], class: C) -> PyResult<PyClassInitializer<C>>
+/// Makes an instance of a task's class, which adds no fields to kind, weights, tolerance, tool, region and level.
+fn instance<C>(kind: TaskKind, options: [Argument<'_, '_>; 4], level: i128, class: C) -> PyResult<PyClassInitializer<C>>
 where
     C: PyClass<BaseType = PyTask>,
 {
-    let core = made(kind, options)?;
+    let core = made(kind, options, level)?;
     Ok(PyClassInitializer::from(PyTask { core }).add_subclass(class))
 }
 
 /// Makes a task.
-fn made(kind: TaskKind, [weights, tolerance, tool, region]: [Argument<'_, '_>; 4]) -> PyResult<Task> {
+fn made(kind: TaskKind, [weights, tolerance, tool, region]: [Argument<'_, '_>; 4], level: i128) -> PyResult<Task> {
     // Reads a number as a vector of one entry: the core's error then says how many entries it needs.
     let entries = |what, value: Argument<'_, '_>| value.map(|value| scalar_or_vector(what, value)).transpose();
     let weights = entries("weights", weights)?.map(|(weights, _)| weights);
     let tolerance = entries("tolerance", tolerance)?.map(|(tolerance, _)| tolerance);
     let tool = tool.map(|value| rigid("tool", value)).transpose()?;
-    let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?;
+    let level = count("level", level)?;
+    let core = Task::new(kind, weights.as_deref(), tolerance.as_deref(), tool).map_err(raise)?.at_level(level);
     match region {
         None => Ok(core),
         Some(region) => {
@@ -134,20 +145,23 @@ macro_rules! task {
         ///     tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
         ///     region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
         ///         infinite on open sides. See `Task`.
+        ///     level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+        ///         allow. Tasks of the same level share the error.
         #[pyclass(name = $name, module = "beetle_ik.tasks", extends = PyTask, frozen)]
         pub struct $class;
 
         #[pymethods]
         impl $class {
             #[new]
-            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None))]
+            #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None, level=0))]
             fn new(
                 weights: Argument<'_, '_>,
                 tolerance: Argument<'_, '_>,
                 tool: Argument<'_, '_>,
                 region: Argument<'_, '_>,
+                level: i128,
             ) -> PyResult<PyClassInitializer<Self>> {
-                instance($kind, [weights, tolerance, tool, region], Self)
+                instance($kind, [weights, tolerance, tool, region], level, Self)
             }
         }
     };
@@ -166,22 +180,25 @@ macro_rules! task {
 ///         comes as near as the first allows. The status is then `ROTATION_GIVEN_UP` or `POSITION_GIVEN_UP`. None:
 ///         "position" for an arm with fewer than six joints; for others both parts share the error. Not with weights
 ///         or a region.
+///     level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+///         allow. Tasks of the same level share the error.
 #[pyclass(name = "Pose", module = "beetle_ik.tasks", extends = PyTask, frozen)]
 pub struct PyPose;
 
 #[pymethods]
 impl PyPose {
     #[new]
-    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None, first=None))]
+    #[pyo3(signature = (*, weights=None, tolerance=None, tool=None, region=None, first=None, level=0))]
     fn new(
         weights: Argument<'_, '_>,
         tolerance: Argument<'_, '_>,
         tool: Argument<'_, '_>,
         region: Argument<'_, '_>,
         #[pyo3(from_py_with = crate::convert::optional_text)] first: Option<&str>,
+        level: i128,
     ) -> PyResult<PyClassInitializer<Self>> {
         let first: Option<First> = first.map(str::parse).transpose().map_err(raise)?;
-        let task = made(TaskKind::Pose, [weights, tolerance, tool, region])?;
+        let task = made(TaskKind::Pose, [weights, tolerance, tool, region], level)?;
         let core = first.map_or(Ok(task), |first| task.with_first(first)).map_err(raise)?;
         Ok(PyClassInitializer::from(PyTask { core }).add_subclass(Self))
     }
@@ -222,22 +239,25 @@ task! {
 ///     tool: (4, 4), pose of the tool in the frame of the tip; the tool reaches the target.
 ///     region: (2, 3) (m), lower and upper corner of the box in the frame of the base that the tip (or tool) stays in;
 ///         infinite on open sides. See `Task`.
+///     level: Order among the tasks of several tips: tasks of a lower level are met first, those of higher levels as far as these
+///         allow. Tasks of the same level share the error.
 #[pyclass(name = "Pointing", module = "beetle_ik.tasks", extends = PyTask, frozen)]
 pub struct PyPointing;
 
 #[pymethods]
 impl PyPointing {
     #[new]
-    #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None, region=None))]
+    #[pyo3(signature = (*, axis=None, weights=None, tolerance=None, tool=None, region=None, level=0))]
     fn new(
         axis: Argument<'_, '_>,
         weights: Argument<'_, '_>,
         tolerance: Argument<'_, '_>,
         tool: Argument<'_, '_>,
         region: Argument<'_, '_>,
+        level: i128,
     ) -> PyResult<PyClassInitializer<Self>> {
         let axis = axis.map_or(Ok([0.0, 0.0, 1.0]), |axis| point("axis", axis))?;
-        instance(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], Self)
+        instance(TaskKind::Pointing { axis }, [weights, tolerance, tool, region], level, Self)
     }
 
     /// The axis in the frame of the tip (3,).

@@ -31,6 +31,7 @@ _WORDS = {
     Status.OUT_OF_REACH: "out of reach",
     Status.ROTATION_GIVEN_UP: "position reached",
     Status.POSITION_GIVEN_UP: "rotation reached",
+    Status.LEVEL_GIVEN_UP: "lowest level reached",
 }
 
 

@@ -38,7 +38,7 @@ class KeptMotions(Attack):
 
     name = "kept_motions"
     promise = "What a plan keeps holds at every instant, and the errors that it tells are bounds"
-    page = "docs/what_must_hold.md"
+    page = "what_must_hold"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         joints = arms.arm(random, hard, (2, 7))

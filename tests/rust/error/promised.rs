@@ -18,7 +18,9 @@ use crate::layers::imports::{Sources, rust_files};
 use ikcore::batch::{BatchOptions, OnInvalid, PlanProblem, Targets, plan_batch, solve_batch};
 use ikcore::calibration::{CalibrationOptions, Measured, PinholeCamera, calibrate};
 use ikcore::constraint::Keep;
-use ikcore::ik::{AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_tips};
+use ikcore::ik::{
+    AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_all_tips, solve_tips,
+};
 use ikcore::interrupt::{checkpoint, interruptible};
 use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack};
 use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};

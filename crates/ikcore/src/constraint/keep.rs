@@ -66,10 +66,17 @@ impl Keep {
     /// A task and its target, for a tip, or for one tip seen from another.
     ///
     /// # Errors
-    /// Those of the task and its target; [`Error::Contradiction`] for a task without a finite tolerance.
+    /// Those of the task and its target; [`Error::Contradiction`] for a task without a finite tolerance, or with a level.
     pub fn new(named: &NamedTask, target: &Target) -> Result<Self> {
         let given = Given { task: *named, target: *target };
         let (task, mut target) = (named.validated()?, *target);
+        if task.level != 0 {
+            let problem = format!(
+                "what is kept comes before all targets, at every instant: leave out the level of its task, {}",
+                task.level
+            );
+            return Err(Error::Contradiction { problem: problem.into() });
+        }
         target.validate()?;
         task.reduce(&mut target)?;
         let gauges = Gauge::all(&target, &task.criterion);

@@ -79,7 +79,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         self.finish(&descent, status, q)
     }
 
-    /// Searches for a whole pose of which one part comes first: briefly, since another search follows a miss.
+    /// Searches for all parts of a target that has an order: briefly, since another search follows a miss.
     pub fn solve_briefly_from(&mut self, x0: &[f64]) -> Solution {
         let bounds = self.context.bounds();
         if self.problem.reach_shortfall(bounds).is_some() {

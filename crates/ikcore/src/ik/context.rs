@@ -10,7 +10,7 @@ use super::preference::Preference;
 use super::ranked::given_up;
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits};
+use crate::limits::{Field, Limits, TipField};
 use crate::math::{JointWeights, sampling_range};
 use crate::message::{Setting, message};
 use crate::objective::Bounds;
@@ -18,7 +18,7 @@ use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Status, Stopwatch};
-use crate::task::{Aims, CheckedTask, First, Goal, Goals, SquaredError, Target, TargetRow};
+use crate::task::{Aims, CheckedTask, First, Goal, Goals, Levels, SquaredError, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -177,6 +177,30 @@ impl<'a> SolveContext<'a> {
         if self.robot.tip_count() == 1 { task.comes_first(target, dof) } else { None }
     }
 
+    /// Whether the tasks of several tips have levels, of which the lower ones come first where not all targets can be met.
+    pub(super) fn has_levels(&self) -> bool {
+        self.robot.tip_count() > 1 && !self.options.whole_only && Levels::are_several(&self.tasks)
+    }
+
+    /// Checks that the tasks have one level: solutions that meet all targets leave nothing to put first.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`].
+    pub(super) fn require_one_level(&self) -> Result<()> {
+        let level = |task: &CheckedTask| task.level;
+        let (lowest, highest) = (self.tasks.iter().map(level).min(), self.tasks.iter().map(level).max());
+        if lowest == highest {
+            return Ok(());
+        }
+        let problem = format!(
+            "all solutions meet all targets, so levels from {} to {} have no effect: give all tasks one level, or solve for one \
+             configuration, which meets them in their order",
+            lowest.unwrap_or_default(),
+            highest.unwrap_or_default()
+        );
+        Err(Error::Contradiction { problem: problem.into() })
+    }
+
     /// Status at an error beyond the tolerances, if the part that comes first is met.
     pub(super) fn given_up(&self, target: &Target, error: &SquaredError) -> Option<Status> {
         given_up(&self.tasks[0], target, self.robot.dof(), error)
@@ -315,6 +339,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let remedy = "a single configuration has no motion; leave it out";
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
+    limits.refuse_tips(&TipField::ALL, "solve", "a single configuration has no motion")?;
     let given = limits.position_box()?;
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }

@@ -36,7 +36,7 @@ pub(crate) use branches_by_part::next_branches;
 pub use checked_tasks::tip_errors;
 pub(crate) use checked_tasks::{checked_tasks, reduce};
 pub(crate) use context::{Query, SolveContext, joint_weights};
-pub(crate) use ranked::{RankedDescent, given_up};
+pub(crate) use ranked::{LevelDescent, RankedDescent, given_up};
 pub use self_motion::{SelfMotion, SelfMotionOptions, self_motion};
 pub use solution::{Nearest, Solution, SolveReport};
 pub use solutions::{SolutionView, Solutions};

@@ -122,6 +122,7 @@ impl SolveReport {
         }
         let ended = match status {
             Status::RotationGivenUp | Status::PositionGivenUp => return self.given_up(),
+            Status::LevelGivenUp => return message![format!("{obstruction}{}: ", self.kept_clear()), status.advice()],
             Status::Solved => return format!("solved to {error}{}", self.kept_clear()).into(),
             Status::InCollision => {
                 return message![format!("reached to {error}, but {obstruction}: "), self.clear_advice()];

@@ -9,7 +9,7 @@ use super::context::{Query, SolveContext};
 use super::first_branch::by_closed_form;
 use super::first_of_family::FamilySearch;
 use super::nearest::nearest_solution;
-use super::ranked::{ranked_at_once, ranked_solution};
+use super::ranked::{level_solution, ranked_at_once, ranked_solution};
 use super::solution::Solution;
 use super::solve_options::{Prefer, SolveOptions};
 use super::whole_turns::bring_near;
@@ -101,6 +101,9 @@ pub(crate) fn solve_query(context: &SolveContext<'_>, query: &Query<'_>, monitor
     if is_missed(solution.status) {
         solution = ranked_solution(&mut attempt, solution, query.start);
     }
+    if is_missed(solution.status) || solution.status == Status::InCollision {
+        solution = level_solution(&mut attempt, solution, query.start);
+    }
     attempt.mark_held_in_region(&mut solution);
     solution
 }
@@ -112,7 +115,19 @@ fn is_missed(status: Status) -> bool {
 
 /// Returns the solution of a pose that cannot be met as a whole, if that is known at once.
 fn without_whole_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
-    ranked_at_once(attempt, start).filter(|found| found.status != Status::Solved)
+    let found = ranked_at_once(attempt, start).or_else(|| by_levels_at_once(attempt, start));
+    found.filter(|found| found.status != Status::Solved)
+}
+
+/// Returns the solution by levels, if a brief search does not meet all targets.
+#[cold]
+fn by_levels_at_once(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
+    if !attempt.context.has_levels() {
+        return None;
+    }
+    let x0 = attempt.first_start(start);
+    let brief = attempt.solve_briefly_from(&x0);
+    is_missed(brief.status).then(|| level_solution(attempt, brief, start))
 }
 
 /// Returns the first solution found; with goals it is moved along its self-motion.
@@ -200,6 +215,7 @@ fn searched_solution(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> So
     }
     match attempt.problem.only_target() {
         Some((target, _)) if attempt.context.comes_first(target).is_some() => attempt.solve_briefly_from(&x0),
+        None if attempt.context.has_levels() => attempt.solve_briefly_from(&x0),
         _ => attempt.solve_from(&x0),
     }
 }

@@ -164,7 +164,7 @@ pub fn solve_all(
 /// [`SolveOptions::tips`], in the same order.
 ///
 /// # Errors
-/// As [`solve_all`].
+/// As [`solve_all`]; [`Error::Contradiction`] for tasks of different levels, which choose among configurations that do not meet all.
 pub fn solve_all_tips(
     robot: &Robot,
     targets: &[Target],
@@ -175,6 +175,7 @@ pub fn solve_all_tips(
     separation.map_or(Ok(()), |separation| require_positive("separation", separation))?;
     limit.map_or(Ok(()), |limit| require_at_least_one("limit", limit))?;
     let context = SolveContext::new(robot, each)?;
+    context.require_one_level()?;
     let targets = context.read(targets)?;
     let start = each.start.as_deref().map(|q| context.hint(q)).transpose()?;
     let start = start.as_deref();

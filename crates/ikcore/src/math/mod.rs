@@ -13,7 +13,7 @@
 //! | `gram`, `ldl`, `banded`, `singular_values` | small linear systems, and banded ones |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `joint_weights` | steps by the joints that cost least |
-//! | `ranked_step` | step for two objectives, one before the other |
+//! | `ranked_step`, `level_step` | step for two objectives, one before the other; for any number in order |
 //! | `secant` | Jacobian estimated from differences |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `cubic_bspline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
@@ -21,6 +21,7 @@
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub(crate) mod banded;
+pub(crate) mod bernstein;
 pub mod block_step;
 pub mod box_step;
 mod columns;
@@ -35,6 +36,7 @@ pub(crate) mod hermite;
 mod joint_weights;
 mod knots;
 pub(crate) mod ldl;
+pub(crate) mod level_step;
 pub(crate) mod logarithm;
 pub mod one_joint;
 pub mod polynomial;

@@ -102,6 +102,10 @@ impl<'a> EndSearch<'a> {
         let first =
             self.solve(SolveOptions { start: Some(start.to_vec()), ..self.options_of(tips) }, targets, monitor)?;
         reached(name, &first)?;
+        if first.status == Status::LevelGivenUp {
+            return Ok(vec![first.q.to_vec()]);
+        }
+        let tips = &of_one_level(tips);
         let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
         let targets: Vec<Target> = targets.iter().chain(self.also_kept(tips).map(Keep::target)).copied().collect();
         let others = solve_all_tips(self.robot, &targets, &all, monitor)?;
@@ -134,10 +138,16 @@ impl<'a> EndSearch<'a> {
     }
 }
 
-/// Err unless the targets of an end were reached.
+/// The tasks without their levels, for solutions that meet all targets.
+fn of_one_level(tips: &[NamedTask]) -> Vec<NamedTask> {
+    let flat = |named: &NamedTask| NamedTask { task: named.task.map(|task| task.at_level(0)), ..*named };
+    tips.iter().map(flat).collect()
+}
+
+/// Err unless the targets of an end were reached, those of higher levels as far as the lower ones allow.
 fn reached(name: EndName, solution: &Solution) -> Result<()> {
     match solution.status {
-        Status::Solved => Ok(()),
+        Status::Solved | Status::LevelGivenUp => Ok(()),
         Status::Interrupted => Err(Error::Interrupted),
         _ => Err(Error::Unreachable { what: name.of_target(), problem: solution.message() }),
     }

@@ -71,7 +71,8 @@ impl<'a> Problem<'a> {
         fixed.collect()
     }
 
-    pub(super) fn aims(&self) -> Aims<'a> {
+    /// Tasks and targets.
+    pub(crate) fn aims(&self) -> Aims<'a> {
         self.aims
     }
 

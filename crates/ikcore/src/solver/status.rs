@@ -69,6 +69,8 @@ statuses! {
         "The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.";
     HeldByConstraint = 18, "HELD_BY_CONSTRAINT":
         "A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.";
+    LevelGivenUp = 19, "LEVEL_GIVEN_UP":
+        "The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.";
 }
 
 impl Status {
@@ -100,6 +102,9 @@ impl Status {
             }
             Self::PositionGivenUp => {
                 "move the target, give the position a tolerance, or take a task that leaves it free, such as Orientation"
+            }
+            Self::LevelGivenUp => {
+                "move the targets of the higher levels, or give them a tolerance, a lower level or a task that leaves more free"
             }
             Self::HeldInRegion => "move the target into the region, or widen the region",
             Self::OutsideLimits => {

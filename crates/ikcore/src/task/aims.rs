@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 use super::assessment::Assessment;
 use super::checked_task::CheckedTask;
 use super::criterion::Criterion;
+use super::levels::Levels;
 use super::subject::Subject;
 use super::target::Target;
 use super::tip_error::{SquaredError, TipError};
@@ -96,14 +97,19 @@ impl<'a> Aims<'a> {
         self.tasks.iter().for_each(|task| keep(task.frame(robot, q).origin));
     }
 
-    /// Whether any task is for a pair of tips.
-    pub(crate) fn has_pairs(&self) -> bool {
-        self.tasks.iter().any(|task| task.subject.is_pair())
+    /// Whether targets of several tips of `robot` have an order.
+    pub(crate) fn has_levels(&self, robot: &Robot) -> bool {
+        robot.tip_count() > 1 && Levels::are_several(self.tasks)
     }
 
-    /// Whether all pairs of tips are at their relative poses at `q`; true without pairs.
+    /// Whether any task is for a pair of tips that is held.
+    pub(crate) fn has_pairs(&self) -> bool {
+        self.tasks.iter().any(|task| task.is_held)
+    }
+
+    /// Whether all pairs of tips that are held are at their relative poses at `q`; true without any.
     pub(crate) fn pairs_are_held(&self, robot: &Robot, q: &[f64]) -> bool {
-        let mut pairs = self.iter().filter(|(task, _)| task.subject.is_pair());
+        let mut pairs = self.iter().filter(|(task, _)| task.is_held);
         pairs.all(|(task, target)| task.assess(target, &task.frame(robot, q)).score.solved)
     }
 
@@ -232,7 +238,7 @@ mod tests {
             let subjects = [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }];
             let tolerance = Tolerance::default();
             let task = |subject| NamedTask { subject, task: Some(kind), tolerance }.validated().unwrap();
-            let tasks = subjects.map(|subject| task(subject).weighing(if subject.is_pair() { 3.0 } else { 1.0 }));
+            let tasks = subjects.map(|subject| if subject.is_pair() { task(subject).held(3.0) } else { task(subject) });
             let mut targets = [wanted; 3];
             tasks.iter().zip(&mut targets).for_each(|(task, target)| task.reduce(target).unwrap());
             let aims = Aims { tasks: &tasks, targets: &targets };

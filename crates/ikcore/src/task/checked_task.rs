@@ -28,16 +28,29 @@ pub struct CheckedTask {
     pub(crate) criterion: Criterion,
     /// Part of a pose that comes before the other.
     pub(crate) first: Option<First>,
+    /// Level among the tasks of several tips.
+    pub(crate) level: u32,
     /// Tool of the task, in the frame of the moving tip.
     pub(super) tool: Option<Box<Frame>>,
     /// Weight of the residual relative to other tasks.
     pub(super) weight: f64,
+    /// Whether a tracked pair of tips is held at its target once it has reached it.
+    pub(crate) is_held: bool,
 }
 
 impl<T: Into<Criterion>> From<T> for CheckedTask {
     /// Task of reaching the whole target of the only tip, by this criterion.
     fn from(criterion: T) -> Self {
-        Self { subject: Subject::Tip(0), kind: None, criterion: criterion.into(), first: None, tool: None, weight: 1.0 }
+        Self {
+            subject: Subject::Tip(0),
+            kind: None,
+            criterion: criterion.into(),
+            first: None,
+            level: 0,
+            tool: None,
+            weight: 1.0,
+            is_held: false,
+        }
     }
 }
 
@@ -58,9 +71,9 @@ impl CheckedTask {
         self.tool = None;
     }
 
-    /// Sets the weight of the residual relative to other tasks.
-    pub(crate) fn weighing(self, weight: f64) -> Self {
-        Self { weight, ..self }
+    /// Marks a pair of tips that is held at its target, with this weight until it has reached it.
+    pub(crate) fn held(self, weight: f64) -> Self {
+        Self { weight, is_held: true, ..self }
     }
 
     /// Assesses `frame`, the frame of the subject.

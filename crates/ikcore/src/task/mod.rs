@@ -4,7 +4,8 @@
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
 //! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q. A
 //! `named_task` is for a tip or a pair of tips; validated, it is a `checked_task`; `aims` are such tasks with their targets.
-//! `band` reduces errors to what lies beyond the tolerances; `ranked` models a pose in which one part comes [`First`]. [`Goals`] are costs in the null space of the task.
+//! `band` reduces errors to what lies beyond the tolerances; `ranked` models a pose in which one part comes [`First`];
+//! `levels` sorts tasks of several tips. [`Goals`] are costs in the null space of the task.
 
 mod aims;
 mod assessment;
@@ -14,6 +15,7 @@ mod components;
 mod criterion;
 mod first;
 mod goal;
+mod levels;
 mod named_task;
 mod ranked;
 mod region;
@@ -34,6 +36,7 @@ pub use components::Components;
 pub use criterion::Criterion;
 pub use first::First;
 pub use goal::{Goal, Goals};
+pub(crate) use levels::Levels;
 pub use named_task::NamedTask;
 pub use region::{Outside, Region};
 pub use subject::Subject;

@@ -39,6 +39,7 @@ impl NamedTask {
         criterion.validate()?;
         let tool = task.and_then(|task| task.tool).map(|tool| Box::new(Frame::from(&tool)));
         let (kind, first) = (task.map(|task| task.kind), task.and_then(|task| task.first));
-        Ok(CheckedTask { subject, kind, criterion, first, tool, weight: 1.0 })
+        let level = task.map_or(0, |task| task.level);
+        Ok(CheckedTask { subject, kind, criterion, first, level, tool, weight: 1.0, is_held: false })
     }
 }

@@ -46,6 +46,8 @@ pub struct Task {
     /// Part of a pose that comes before the other. `None` means the position for a robot with fewer than six joints, where the
     /// whole pose cannot be met, and neither for others.
     pub first: Option<First>,
+    /// Level among the tasks of several tips: tasks of a lower level are met first.
+    pub level: u32,
 }
 
 impl TaskKind {
@@ -110,7 +112,7 @@ impl TaskKind {
 
 impl From<TaskKind> for Task {
     fn from(kind: TaskKind) -> Self {
-        Self { kind, components: None, tool: None, region: None, first: None }
+        Self { kind, components: None, tool: None, region: None, first: None, level: 0 }
     }
 }
 
@@ -131,7 +133,7 @@ impl Task {
                 tolerance: tolerance.map(|entries| kind.expand("tolerance", entries, f64::INFINITY)).transpose()?,
             }),
         };
-        let task = Self { kind, components, tool, region: None, first: None };
+        let task = Self { kind, components, tool, region: None, first: None, level: 0 };
         task.validate().map(|()| task)
     }
 
@@ -151,6 +153,11 @@ impl Task {
     pub fn with_first(self, first: First) -> Result<Self> {
         let task = Self { first: Some(first), ..self };
         task.validate().map(|()| task)
+    }
+
+    /// Sets the level among the tasks of several tips.
+    pub fn at_level(self, level: u32) -> Self {
+        Self { level, ..self }
     }
 
     /// Criterion for targets of this task.

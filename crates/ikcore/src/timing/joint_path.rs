@@ -82,6 +82,11 @@ impl JointPath {
         Self { speeds, ..self }
     }
 
+    /// Whether any piece has a largest path speed.
+    pub(super) fn has_speeds(&self) -> bool {
+        self.speeds.iter().any(|speed| speed.is_finite())
+    }
+
     /// Largest path speed on a piece; infinite where only the joints limit it.
     pub(crate) fn largest_speed(&self, piece: usize) -> f64 {
         self.speeds.get(piece).copied().unwrap_or(f64::INFINITY)

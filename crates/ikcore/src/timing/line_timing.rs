@@ -3,6 +3,7 @@
 use super::constant_limits::ConstantLimits;
 use super::polyline::JointPolyline;
 use super::quintic::quintic;
+use super::time_optimal::{TimingOptions, time};
 use super::time_scaling::{CAUTION, within_limits};
 use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
@@ -45,10 +46,23 @@ impl JointPolyline {
     }
 
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
+    ///
+    /// Where limits of tips would slow the motion down as a whole, it slows down where they bind instead, if accelerations may jump.
     pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         if limits.limit_jerk() {
             return self.with_stops_and_jerk(limits);
         }
+        let motion = self.with_quintics(limits)?;
+        let slowed = limits.within_tip_limits(motion.clone())?;
+        if slowed == motion || limits.require_accelerations("lines").is_err() {
+            return Ok(slowed);
+        }
+        let paced = time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default())?;
+        Ok(if paced.duration() < slowed.duration() { paced } else { slowed })
+    }
+
+    /// Moves from rest to rest along each line by a quintic.
+    fn with_quintics(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;
         for line in self.0.windows(2) {
@@ -93,7 +107,8 @@ impl JointPolyline {
         let motion = self.blended(limits, &times);
         // A blend that is just too short exceeds a jerk limit by twice as much.
         let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
-        Some(if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion })
+        let motion = if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion };
+        Some(motion.and_then(|motion| limits.within_tip_limits(motion)))
     }
 
     /// The times of the motion with blends.

@@ -11,6 +11,7 @@
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
 //! | `strips` | the acceleration limits |
+//! | `tip_segments` | the limits of tips over segments |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
@@ -36,6 +37,7 @@ mod spline;
 mod strips;
 mod time_optimal;
 mod time_scaling;
+mod tip_segments;
 mod tube;
 mod velocity_curve;
 mod violation;

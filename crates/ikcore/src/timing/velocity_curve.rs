@@ -4,6 +4,7 @@ use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
+use super::tip_segments::TipSegments;
 use crate::math::polynomial::quadratic_roots;
 
 /// Represents no bound; finite, to leave room for arithmetic.
@@ -14,21 +15,32 @@ pub(super) const UNLIMITED: f64 = 1e100;
 const LARGEST_GROWTH: f64 = 4.0;
 
 /// Returns bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion within them,
-/// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
+/// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v,
+/// and those of tips.
 pub(super) fn maximum_velocity_curve(
     path: &JointPath,
     limits: &ConstantLimits,
     segments: &[Segment],
+    tips: Option<&TipSegments<'_>>,
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
     let mut curve = at_grid_points(path, limits, segments, derivatives);
+    if let Some(tips) = tips {
+        for i in 0..segments.len() {
+            let [left, right] = tips.at_ends(i);
+            (curve[i], curve[i + 1]) = (curve[i].min(left), curve[i + 1].min(right));
+        }
+    }
     tame_poles(&mut curve);
     let mut factor_before = f64::INFINITY;
     let mut left = curve[0];
     for (i, segment) in segments.iter().enumerate() {
         derivatives.fill(path, segment);
         let right = curve[i + 1];
-        let factor = chord_factor(derivatives, limits, left, right);
+        let mut factor = chord_factor(derivatives, limits, left, right);
+        if let Some(tips) = tips {
+            factor = factor.min(1.0 / tips.excess(i, segment.length, [left, right]).max(1.0));
+        }
         curve[i] = left * factor.min(factor_before);
         (left, factor_before) = (right, factor);
     }

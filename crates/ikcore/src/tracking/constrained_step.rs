@@ -118,7 +118,7 @@ impl ConstrainedStep {
         let StepRequest { aims, ends: [lower, upper], towards, .. } = *step;
         self.held.clear();
         self.hold_pairs(&aims, start);
-        let is_pair = |i: usize| aims.tasks.get(i).is_some_and(|task| task.subject.is_pair());
+        let is_pair = |i: usize| aims.tasks.get(i).is_some_and(|task| task.is_held);
         let counts = |i: usize| towards != Towards::Joints && !is_pair(i);
         let blocks = self.linearization.blocks().enumerate().filter(|(i, _)| counts(*i));
         let tasks = blocks.map(|(_, TaskBlock { columns, residual })| match towards {
@@ -166,7 +166,7 @@ impl ConstrainedStep {
 
     /// Largest error of the pairs at the linearization.
     fn missed(&self, aims: &Aims<'_>) -> f64 {
-        let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.subject.is_pair());
+        let blocks = self.linearization.blocks().zip(aims.tasks).filter(|(_, task)| task.is_held);
         blocks.map(|(block, _)| dot(&block.residual, &block.residual)).fold(0.0, f64::max).sqrt()
     }
 
@@ -184,7 +184,7 @@ impl ConstrainedStep {
     /// Adds the equations of all pairs: r + J (x - start) = 0.
     fn hold_pairs(&mut self, aims: &Aims<'_>, start: &[f64]) {
         for (block, task) in self.linearization.blocks().zip(aims.tasks) {
-            for k in (0..ROWS).filter(|_| task.subject.is_pair()) {
+            for k in (0..ROWS).filter(|_| task.is_held) {
                 let mut gradient = [0.0; MAX_DOF];
                 let columns = block.columns[..start.len()].iter();
                 gradient.iter_mut().zip(columns).for_each(|(entry, column)| *entry = column[k]);

@@ -72,6 +72,10 @@ fn checked(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<CheckedTask>> {
         let problem = "a tracked region is for one tip: leave it out of the tasks of several".into();
         return Err(Error::Contradiction { problem });
     }
-    let weighed = |task: CheckedTask| if task.subject.is_pair() { task.weighing(PAIR_WEIGHT) } else { task };
-    Ok(checked_tasks(robot, tasks)?.into_iter().map(weighed).collect())
+    let tasks = checked_tasks(robot, tasks)?;
+    // A pair of a higher level gives way to the tips of a lower one.
+    let lowest = tasks.iter().map(|task| task.level).min().unwrap_or_default();
+    let is_held = |task: &CheckedTask| task.subject.is_pair() && task.level == lowest;
+    let held = |task: CheckedTask| if is_held(&task) { task.held(PAIR_WEIGHT) } else { task };
+    Ok(tasks.into_iter().map(held).collect())
 }

@@ -280,10 +280,10 @@ impl Record {
         };
     }
 
-    /// Part given up in some steps from row `joined` on, if the other was met in all.
+    /// Part or level given up in some steps from row `joined` on, if the other part, or the lowest level, was met in all.
     fn given_up(&self, joined: usize) -> Option<Status> {
         let steps = &self.step_status[joined..];
-        let parts = [Status::RotationGivenUp, Status::PositionGivenUp];
+        let parts = [Status::RotationGivenUp, Status::PositionGivenUp, Status::LevelGivenUp];
         let part = steps.iter().find(|status| parts.contains(status))?;
         steps.iter().all(|status| status == part || *status == Status::Solved).then_some(*part)
     }
@@ -437,6 +437,13 @@ impl Record {
             );
             return message![except, self.status.advice()];
         }
+        if self.status == Status::LevelGivenUp {
+            let count = self.step_status[joined..].iter().filter(|status| **status == self.status).count();
+            let sentence = format!(
+                "the lowest level met from t = {since} s on; a higher one given up in {count} of {last} steps, by up to {worst}: "
+            );
+            return message![sentence, self.status.advice()];
+        }
         if matches!(self.status, Status::RotationGivenUp | Status::PositionGivenUp) {
             let count = self.step_status[joined..].iter().filter(|status| **status == self.status).count();
             let (met, part, off) = match self.status {
@@ -475,9 +482,10 @@ impl Record {
     }
 }
 
-/// Whether the tick ended in the band, as near to it as the region allows, or with the part of the pose that comes first met.
+/// Whether the tick ended in the band, as near to it as the region allows, or with the part or level that comes first met.
 fn is_in_place(status: &Status) -> bool {
-    matches!(status, Status::Solved | Status::HeldInRegion | Status::RotationGivenUp | Status::PositionGivenUp)
+    let given_up = [Status::RotationGivenUp, Status::PositionGivenUp, Status::LevelGivenUp];
+    matches!(status, Status::Solved | Status::HeldInRegion) || given_up.contains(status)
 }
 
 /// Smallest error; NaN (not part of the task) is ignored.

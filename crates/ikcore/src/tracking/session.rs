@@ -129,6 +129,11 @@ impl Session {
         if self.arm.has_one_tip() { vec![] } else { self.arm.aims().errors(&self.arm.robot, &self.arm.q).to_vec() }
     }
 
+    /// Which levels of the targets are met, and which are not, by tip; `None` for targets without an order.
+    pub fn levels_in_words(&self) -> Option<String> {
+        Some(self.arm.levels()?.in_words(&self.arm.robot, &self.arm.q))
+    }
+
     /// Positions (m) of the tips that have targets, in the order of the targets; for pairs, in the frame of the first tip.
     pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
         let mut positions = vec![];
@@ -339,7 +344,7 @@ impl Session {
                 Holder::Body => Status::HeldByObstacle,
                 Holder::Constraint => Status::HeldByConstraint,
             },
-            _ if let Some(status) = self.arm.given_up(&found.assessment.error) => status,
+            _ if let Some(status) = self.arm.given_up(found) => status,
             Some(last) if value >= last => Status::Capped,
             // Other rules may take steps as short as these.
             _ if self.way_back.is_some() && self.arm.rests_at(&found.q) => Status::Capped,

@@ -14,7 +14,8 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::HeldByConstraint`] if what is to be kept does, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
+    /// holds the arm back, [`Status::HeldByConstraint`] if what is to be kept does, [`Status::LevelGivenUp`] if the lowest level of
+    /// several targets is met, not all, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
     /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
     pub status: Status,
     /// Errors at the accepted configuration.
@@ -68,6 +69,7 @@ impl Step {
             Status::Improved => return format!("nearer than in the tick before, {error} away{limits}").into(),
             Status::RotationGivenUp => "position met and rotation given up",
             Status::PositionGivenUp => "rotation met and position given up",
+            Status::LevelGivenUp => "the lowest level met and a higher one given up",
             Status::HeldInRegion => "as near as its region allows",
             Status::InCollision => "nearer than the margin to an obstacle or another link",
             Status::HeldByObstacle => "held back by an obstacle or another link",

@@ -17,7 +17,7 @@ use crate::message::Message;
 use crate::objective::Point;
 use crate::robot::Robot;
 use crate::solver::Status;
-use crate::task::{Aims, SquaredError};
+use crate::task::{Aims, Levels};
 
 /// Speed below which a joint rests (rad/s, m/s).
 const REST: f64 = 1e-4;
@@ -158,10 +158,19 @@ impl TrackedArm {
         only.is_some_and(|(target, criterion)| criterion.blocked_by_region(target).is_some())
     }
 
-    /// Status at an error beyond the tolerances, if the part of the only target that comes first is met.
-    pub fn given_up(&self, error: &SquaredError) -> Option<Status> {
+    /// Levels of the targets of several tips, if they have an order.
+    pub fn levels(&self) -> Option<Levels> {
+        let aims = self.aims();
+        aims.has_levels(&self.robot).then(|| Levels::of(&aims))
+    }
+
+    /// Status of `found`, beyond the tolerances, if the part of the only target that comes first is met, or the lowest level of several.
+    pub fn given_up(&self, found: &TickResult) -> Option<Status> {
+        if let Some(levels) = self.levels() {
+            return levels.lowest_is_met(&self.robot, &found.q).then_some(Status::LevelGivenUp);
+        }
         let (task, target) = self.aims().iter().next().filter(|_| self.has_one_tip())?;
-        given_up(task, target, self.robot.dof(), error)
+        given_up(task, target, self.robot.dof(), &found.assessment.error)
     }
 
     /// Assesses the result `found`, with one evaluation.

@@ -49,7 +49,7 @@ pub struct PyStep {
     among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Names the joints that limits of zero lock.
     lock: Option<Arc<Message>>,
-    /// The constraint that holds the arm, in words.
+    /// The constraint that holds the arm, or the levels of its targets, in words.
     held_by: Option<String>,
     /// Sentence about a target whose rotation had drifted.
     drift: Option<String>,
@@ -65,6 +65,7 @@ outcome! {
     success,
     /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
     /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+    /// LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
     /// IMPROVED if nearer than in the previous step; otherwise CAPPED.
     status: result.core.status,
     message: result.sentence(),

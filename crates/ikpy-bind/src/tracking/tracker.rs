@@ -245,7 +245,11 @@ impl PyTracker {
         let joints = if core.away.is_some() { names() } else { vec![] };
         let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
-        let held_by = (core.status == Status::HeldByConstraint).then(|| session.tightest()).flatten();
+        let held_by = match core.status {
+            Status::HeldByConstraint => session.tightest(),
+            Status::LevelGivenUp | Status::Capped => session.levels_in_words(),
+            _ => None,
+        };
         let step = step.among(space, q).of_tips(tips).naming(joints).held_by(held_by);
         Ok(step.led_from(outside).of_locked(lock).of_drifted_target(drift))
     }

@@ -20,6 +20,13 @@ pub fn calls() -> Vec<Row> {
         each: SolveOptions { limits: Some(wide()), ..SolveOptions::default() },
         ..AllOptions::default()
     };
+    let at_level = |level| NamedTask {
+        subject: Subject::Tip(level as usize),
+        task: Some(Task::from(TaskKind::Position).at_level(level)),
+        tolerance: Tolerance::default(),
+    };
+    let each = SolveOptions { tips: vec![at_level(0), at_level(1)], ..SolveOptions::default() };
+    let levels = AllOptions { each, ..AllOptions::default() };
     let problem = |q: &[f64]| PlanProblem {
         start: at(q),
         ends: vec![at(&[0.5; 2])],
@@ -52,6 +59,7 @@ pub fn calls() -> Vec<Row> {
         "Robot::urdf_with_geometry" SeveralTips: arms().urdf_with_geometry(&two_arms()), "writing a URDF takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "solve_batch" InRow: batch(&[[1.0, 0.5, 0.0], [NAN; 3]]), "row 1: target must be finite, but coordinate x is NaN";
         "solve_all" Contradiction: solve_all(&two(), &position, &turns, &mut Unattended), "taking all whole turns makes 202566 configurations; at most 10000 are allowed: narrow the limits";
+        "solve_all_tips" Contradiction: solve_all_tips(&arms(), &[position; 2], &levels, &mut Unattended), "all solutions meet all targets, so levels from 0 to 1 have no effect: give all tasks one level, or solve for one configuration, which meets them in their order";
         "self_motion" Contradiction: self_motion(&two(), &position, &SelfMotionOptions::default(), &mut Unattended), "self_motion needs one joint more than the target: robot 'planar2' has 2 joints, and this target takes 2";
         "plan_batch" InProblem: plans(&[0.0], 1), "problems[0]: start_q of robot 'planar2': expected 2 joints, got 1";
         "plan_batch" OutOfRange: plans(&[0.0; 2], 0), "threads must be from 1 to 1024, got 0";

@@ -38,6 +38,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Task::target" WrongTarget: weighed(TaskKind::Orientation, &[1.0; 3]).unwrap().target(&Target::Position([0.0; 3])), "task Orientation needs a target pose (4, 4), got a position (3,)";
         "Goal::validate_numbers" OutOfRange: Goal::Centring { weight: 0.0 }.validate_numbers(), "weight of a goal must be positive and finite, got 0";
         "Keep::new" Contradiction: kept(0, Some(unbounded)), "nothing would be kept: all tolerances of the task are infinite, or all its weights zero";
+        "Keep::new" Contradiction: kept(0, Some(Task::from(TaskKind::Position).at_level(1))), "what is kept comes before all targets, at every instant: leave out the level of its task, 1";
         "Keep::require_tips" Contradiction: kept(1, None).unwrap().require_tips(&two()), "something is to be kept for tip number 1, but the robot has 1";
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";
         "Algorithm::validate" OutOfRange: Algorithm::from(NewtonRaphson { step_fraction: 0.0 }).validate(), "step_fraction must be above 0 and at most 1, got 0";

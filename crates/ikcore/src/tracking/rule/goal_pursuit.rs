@@ -5,12 +5,13 @@
 //! only. [`MovingGoal`] filters the samples by their noise; [`Pursuit`] chooses the joint accelerations. Without noise the arm
 //! meets a smoothly moving target exactly, with one Jacobian and one tip per tick.
 
-use super::tick::{Tick, TickResult};
-use crate::ik::RankedDescent;
+use super::tick::{BY_LEVELS, Tick, TickResult};
+use crate::ik::{LevelDescent, RankedDescent};
 use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, JointState, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
+use crate::task::Levels;
 use crate::tracking::step_context::StepContext;
 
 /// Largest number of Gauss-Newton steps in a tick; they converge quadratically.
@@ -97,11 +98,12 @@ impl GoalPursuit {
         found
     }
 
-    /// Solves for a sample within the tolerances where the target itself was not met, or of a pose of which one part comes first.
+    /// Solves for a sample within the tolerances where the target itself was not met, of a pose of which one part comes first, or of
+    /// several tips by levels.
     fn solve_in_order(&mut self, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let StepContext { robot, aims, .. } = tick.context;
-        let ranked = tick.ranked();
-        if ranked.is_none() && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
+        let (ranked, has_levels) = (tick.ranked(), tick.has_levels());
+        if ranked.is_none() && !has_levels && !aims.iter().any(|(task, _)| task.criterion.has_band()) {
             return;
         }
         found.evaluations += 1;
@@ -113,6 +115,13 @@ impl GoalPursuit {
         found.evaluations += near.evaluations;
         if is_within {
             self.sample = near.q;
+            return;
+        }
+        if has_levels {
+            let levels = Levels::of(&aims);
+            let mut descent = LevelDescent::new(robot, &levels, positions, BY_LEVELS);
+            self.sample = descent.descend(&self.expected, None).q;
+            found.evaluations += descent.evaluations;
             return;
         }
         let Some((pose, first)) = ranked else { return };
@@ -149,6 +158,7 @@ impl GoalPursuit {
             Some(goal) if !found.interrupted => {
                 let (braking, scales, reachable) = (motion.braking(), motion.scales(), tick.bounds());
                 Pursuit { goal, braking, scales, reachable }.write(q, motion.state(), &mut found.q);
+                keep_lowest_level(&mut found, tick);
             }
             _ => {
                 found.q = motion.stopping(q);
@@ -274,4 +284,17 @@ impl GoalPursuit {
             self.sample = end.q;
         }
     }
+}
+
+/// Moves the command of joints that pursue their goals one by one to the nearest that meets the lowest level of the targets, as far as
+/// the tick allows.
+fn keep_lowest_level(found: &mut TickResult, tick: &Tick<'_>) {
+    let StepContext { robot, aims, .. } = tick.context;
+    if !tick.has_levels() {
+        return;
+    }
+    let levels = Levels::of(&aims);
+    let mut descent = LevelDescent::new(robot, &levels, tick.bounds(), BY_LEVELS);
+    descent.lower_lowest(&mut found.q);
+    found.evaluations += descent.evaluations;
 }

@@ -12,6 +12,10 @@ use crate::task::{Aims, Assessment, CheckedTask, Criterion, First, Goals, Square
 use crate::tracking::step_context::StepContext;
 use crate::tracking::target_stream::TargetStream;
 
+/// Evaluation budget of a descent by levels in one tick, even while a way back is looked for: the lowest level is not left alone. The
+/// next tick continues.
+pub(super) const BY_LEVELS: usize = 400;
+
 /// Evaluation budget of a descent to a configuration within the tolerances.
 const INTO_BAND: usize = 30;
 
@@ -50,6 +54,11 @@ impl Tick<'_> {
         let (Target::Pose(pose), [task]) = (self.target, aims.tasks) else { return None };
         let first = if robot.tip_count() == 1 { task.comes_first(self.target, robot.dof()) } else { None };
         Some((*pose, first?))
+    }
+
+    /// Whether the targets of several tips have an order.
+    pub(super) fn has_levels(&self) -> bool {
+        self.context.aims.has_levels(self.context.robot)
     }
 
     /// Largest fraction of the way from `from` to `to` (n,) that the box allows all joints, at most 1.

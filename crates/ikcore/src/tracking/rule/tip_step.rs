@@ -1,11 +1,14 @@
 //! Model-based rule for several tips: Gauss-Newton in the box of the tick.
 //!
 //! A static target that one tick cannot reach is approached by all joints in proportion, as in `approach`. If that does not
-//! lower the error, for instance out of reach, Levenberg-Marquardt lowers it as far as the tick allows.
+//! lower the error, for instance out of reach, Levenberg-Marquardt lowers it as far as the tick allows. Targets of several levels
+//! that the tick cannot meet together are met in their order.
 
-use super::tick::{Tick, TickResult};
+use super::tick::{BY_LEVELS, Tick, TickResult};
+use crate::ik::LevelDescent;
 use crate::objective::{Linearization, Point};
 use crate::solver::{LevenbergMarquardt, Stop};
+use crate::task::Levels;
 use crate::tracking::step_context::StepContext;
 
 /// Largest number of Gauss-Newton steps in a tick; they converge quadratically.
@@ -33,7 +36,7 @@ impl TipStep {
         begin.assessment = aims.linearize(robot, &begin.q, &mut self.begin, |_| ());
         begin.evaluations = 1;
         let mut found = begin.clone();
-        if tick.takes_its_time() && self.approach(&begin, &mut found, &tick) {
+        if tick.takes_its_time() && !tick.has_levels() && self.approach(&begin, &mut found, &tick) {
             return found;
         }
         let preferred = tick.preferred(&begin.q);
@@ -47,6 +50,10 @@ impl TipStep {
         if !found.is_solved() && tick.descend_into_band(&mut found, &tick_box.bounds) {
             found.assess(robot, &aims);
         }
+        if !found.is_solved() && tick.has_levels() {
+            self.by_levels(&begin, &mut found, &tick);
+            return found;
+        }
         if !found.is_solved() && !self.approach(&begin, &mut found, &tick) {
             let stop = Stop { max_evaluations: MOST_EVALUATIONS.min(tick.most_evaluations), ..Stop::default() };
             tick.descend(&mut found, &tick_box.bounds, stop);
@@ -54,6 +61,27 @@ impl TipStep {
             found.evaluations += 1;
         }
         found
+    }
+
+    /// Meets the targets level by level, as far as the tick allows. Where those of the lowest stand still and are far, all joints move
+    /// in proportion, if that brings the lowest level nearer.
+    fn by_levels(&mut self, begin: &TickResult, found: &mut TickResult, tick: &Tick<'_>) {
+        let StepContext { robot, aims, tick_box, .. } = tick.context;
+        let levels = Levels::of(&aims);
+        let mut descent = LevelDescent::new(robot, &levels, &tick_box.bounds, BY_LEVELS);
+        let reached = descent.descend(&begin.q, None);
+        found.evaluations += descent.evaluations + 1;
+        found.iterations += descent.evaluations;
+        found.q.copy_from_slice(&reached.q);
+        found.assess(robot, &aims);
+        if tick.targets.moves() || levels.lowest_is_met(robot, &found.q) {
+            return;
+        }
+        let lowest = |q: &[f64]| levels.aims(0).assess(robot, q).score.value;
+        let mut near = TickResult { evaluations: found.evaluations, iterations: found.iterations, ..begin.clone() };
+        if self.approach(begin, &mut near, tick) && lowest(&near.q) < lowest(&begin.q) {
+            *found = near;
+        }
     }
 
     /// Steps from `found`, at the start of the tick, while the error falls. The first step, towards the `preferred`
