@@ -153,6 +153,11 @@ SPOILED = {
         "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
         "what is kept does not hold",
     ),
+    "tip_limits": (
+        "powers = motion.coefficients\nscale = 1e4 ** np.arange(powers.shape[2])\n"
+        "motion = bik.Trajectory(motion.time / 1e4, powers * scale)",
+        "a tip is beyond its limit",
+    ),
     "kept_motions": (
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",

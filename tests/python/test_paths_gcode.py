@@ -111,18 +111,28 @@ def test_absolute_centers_are_read() -> None:
     np.testing.assert_allclose(read("G1 X10 F600\nG90.1 G3 X0 Y10 I0 J0").poses, relative.poses, atol=1e-12)
 
 
-def test_the_path_begins_where_the_position_is_known() -> None:
-    program = bik.paths.from_gcode("G1 Z0.2 F1200\nG1 X5 Y5\nG1 X10\n")
-    np.testing.assert_allclose(points(program), [(5, 5, 0.2), (10, 5, 0.2)], atol=1e-12)
+def test_the_path_begins_at_the_origin_or_where_told() -> None:
+    square = "G1 X10 F600\nG1 Y10\nG1 X0\nG1 Y0\n"
+    np.testing.assert_allclose(
+        points(bik.paths.from_gcode(square)), [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 0)], atol=1e-12
+    )
     begun = bik.paths.from_gcode("G91\nG1 X5 F600\n", start=(0.1, 0.2, 0.3))
     np.testing.assert_allclose(points(begun), [(100, 200, 300), (105, 200, 300)], atol=1e-12)
+
+
+@pytest.mark.parametrize("before", ["", "G28\n", "G28 X0 Y0\nG28 Z0\n"])
+def test_an_unknown_start_is_left_out_and_told(before: str) -> None:
+    text = f"{before}G1 Z0.2 F1200\nG0 X5 Y5\nG1 X10\n"
+    program = bik.paths.from_gcode(text, start=None if not before else (0.0, 0.0, 0.0))
+    np.testing.assert_allclose(points(program), [(5, 5, 0.2), (10, 5, 0.2)], atol=1e-12)
+    assert program.ignored[-1][1] == "G1 Z0.2 F1200"
 
 
 def test_homing_is_told_and_left_by_a_rapid_move() -> None:
     program = read("G1 X10 F600\nG28 Z0\nG1 X20\nG1 Z1\nG1 X30")
     np.testing.assert_allclose(points(program), [(0, 0, 0), (10, 0, 0), (20, 0, 1), (30, 0, 1)], atol=1e-12)
     assert program.rapid.tolist() == [False, True, False]
-    assert program.ignored == [(3, "G28 Z0")]
+    assert program.ignored == [(3, "G28 Z0"), (4, "G1 X20"), (5, "G1 Z1")]
 
 
 def test_what_moves_nothing_is_told() -> None:
@@ -232,10 +242,10 @@ def test_what_is_not_read_is_refused_by_line_and_word(text: str) -> None:
 @pytest.mark.parametrize(("call", "message"), [
     (lambda: api.paths.from_gcode("\n"), "no move between two known positions: the program draws no path"),
     (lambda: api.paths.from_gcode("; only\n(comments)\n"), "no move between two known positions: the program draws no path"),
-    (lambda: api.paths.from_gcode("G0 X1 Y1\nG1 X2 F1"), "no move between two known positions: the program draws no path"),
+    (lambda: api.paths.from_gcode("G0 X1 Y1\nG1 X2 F1", start=None), "no move between two known positions: the program draws no path"),
     (lambda: api.paths.from_gcode("X1\n"), "line 1: X1: a position before any G0 to G3"),
-    (lambda: api.paths.from_gcode("G91 G1 X1 F1\n"), "line 1: X1: G91 from a place that is not known: give start="),
-    (lambda: api.paths.from_gcode("G2 X1 Y1 Z0 I1 F1\n"), "line 1: an arc from a place that is not known: give start="),
+    (lambda: api.paths.from_gcode("G91 G1 X1 F1\n", start=None), "line 1: X1: G91 from a place that is not known: give start="),
+    (lambda: api.paths.from_gcode("G2 X1 Y1 Z0 I1 F1\n", start=None), "line 1: an arc from a place that is not known: give start="),
     (lambda: api.paths.from_gcode("none.nc"), "cannot read file 'none.nc': No such file or directory; a program given as text has at least two lines"),
     (lambda: api.paths.from_gcode(5), "file must be a file, or the text of a program, got 5"),
     (lambda: api.paths.from_gcode(ORIGIN, axis=(0, 0, 0)), "axis must not be zero, got [0.0, 0.0, 0.0]"),

@@ -276,6 +276,20 @@ def test_rows_over_a_pipe_go_round_it_where_all_is_covered() -> None:
     assert half[0].length == pytest.approx(np.pi * 0.1, rel=1e-2)
 
 
+def test_a_row_is_whole_where_triangles_meet_within_an_edge() -> None:
+    vertices = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0.5, 0), (2, 0, 0), (2, 1, 0)]
+    faces = [(0, 1, 2), (0, 2, 3), (1, 5, 4), (4, 5, 6), (4, 6, 2)]
+    passes = bik.paths.raster((vertices, faces), spacing=0.2, direction=(1, 0, 0))
+    assert [round(row.length, 6) for row in passes] == [1.8] * 5
+
+
+def test_a_closed_part_is_covered_from_above() -> None:
+    one, other = (
+        bik.paths.raster(BALL, spacing=0.1, direction=(1, 0, 0), **side) for side in ({}, {"side": (0, 0, 1)})
+    )
+    assert one == other
+
+
 def test_a_hole_divides_a_row() -> None:
     plate = trimesh.creation.annulus(r_min=0.1, r_max=0.3, height=0.02, sections=256)
     passes = bik.paths.raster(plate, spacing=0.05, direction=(1, 0, 0), side=(0, 0, 1), inset=0.01)
@@ -299,6 +313,23 @@ def test_passes_are_joined_in_order_with_a_lift() -> None:
     assert flat.contact.all()
 
 
+@pytest.mark.parametrize("flip", [False, True])
+def test_a_joined_line_stays_on_the_surface(flip: bool) -> None:
+    x, y = np.meshgrid(np.linspace(-0.12, 0.12, 60), np.linspace(-0.12, 0.12, 60))
+    vertices = np.column_stack([c.ravel() for c in (x, y, np.sqrt(0.25**2 - x**2 - y**2))])
+    corner = (np.arange(59)[:, None] * 60 + np.arange(59)).ravel()
+    dome = (vertices, (corner[:, None] + np.array([[[0, 1, 61]], [[0, 61, 60]]])).reshape(-1, 3))
+    passes = bik.paths.raster(dome, spacing=0.02, direction=(0, 1, 0), standoff=0.03, flip=flip)
+    joined = bik.paths.join(passes, surface=dome)
+    assert_frames(joined)
+    way = joined.poses[~joined.contact]
+    np.testing.assert_allclose(np.linalg.norm(way[:, :3, 3], axis=1), 0.22 if flip else 0.28, atol=5e-5)
+    outward = way[:, :3, 3] / np.linalg.norm(way[:, :3, 3], axis=1, keepdims=True)
+    assert np.abs(np.einsum("ki,ki->k", -way[:, :3, 2], outward) - (-1.0 if flip else 1.0)).max() < 1e-4
+    turns = joined.poses[:-1, :3, :3].transpose(0, 2, 1) @ joined.poses[1:, :3, :3]
+    assert np.degrees(np.arccos(np.clip((np.trace(turns, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0))).max() < 20.0
+
+
 def test_a_spacing_wider_than_the_part_makes_one_row() -> None:
     (row,) = bik.paths.raster(SHEET, spacing=5.0, direction=(1, 0, 0))
     np.testing.assert_allclose(places(row)[:, 1], 0.5, atol=1e-9)
@@ -319,6 +350,14 @@ def test_a_plane_through_vertices_cuts_once() -> None:
 
 # --- wrong input ----------------------------------------------------------------------------------
 
+SHEETS = (np.concatenate([CORNERS, np.add(CORNERS, (2.0, 0.0, 0.0))]), np.concatenate([SHEET[1], SHEET[1] + 4]))
+APART = bik.paths.raster(SHEETS, spacing=2.0, direction=(1, 0, 0), inset=0.1)
+AROUND = np.linspace(0, 2 * np.pi, 13)[:-1]
+RING = np.column_stack([np.cos(AROUND), np.sin(AROUND), 0 * AROUND])
+TUBE = (
+    np.concatenate([RING, np.add(RING, (0, 0, 1))]),
+    [f for i in range(12) for j in [(i + 1) % 12] for f in ((i, j, 12 + j), (i, 12 + j, 12 + i))],
+)
 ALONG = {"spacing": 0.1, "direction": (1, 0, 0)}
 STRIP = np.array([(np.cos(a) * (1 + w * np.cos(a / 2)), np.sin(a) * (1 + w * np.cos(a / 2)), w * np.sin(a / 2))
                   for a in np.linspace(0, 2 * np.pi, 25)[:-1] for w in (-0.2, 0.2)])  # fmt: skip
@@ -348,7 +387,8 @@ MOEBIUS = [tuple({48: 1, 49: 0}.get(v, v) for v in face) for face in MOEBIUS]
     (lambda: api.paths.on_surface(TABLE, LINE, crease=4.0), "crease must be between 0 and 3.14159, got 4"),
     (lambda: api.paths.on_surface(TABLE, LINE, lead="along"), "lead must be 'normal' or 'tangent', got 'along'"),
     (lambda: api.paths.on_surface(TABLE, LINE, closed=1), "closed must be True or False, got 1"),
-    (lambda: api.paths.raster(TABLE, **ALONG), "side= is needed: the surface is closed; it is the direction from the part to the tool"),
+    (lambda: api.paths.raster(TABLE, spacing=0.1, direction=(0, 0, 1)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
+    (lambda: api.paths.raster(TUBE, **ALONG), "side= is needed: the normals of the surface point to all sides"),
     (lambda: api.paths.raster(SHEET, spacing=0.1, direction=(0, 0, 2)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
     (lambda: api.paths.raster(SHEET, spacing=0.1, direction=(0, 0, 0)), "direction must not be zero, got [0.0, 0.0, 0.0]"),
     (lambda: api.paths.raster(SHEET, spacing=0.0, direction=(1, 0, 0)), "spacing must be positive and finite, got 0"),
@@ -356,6 +396,8 @@ MOEBIUS = [tuple({48: 1, 49: 0}.get(v, v) for v in face) for face in MOEBIUS]
     (lambda: api.paths.raster(SHEET, **ALONG, side=(0, 0, -1)), "no face of the surface looks towards side= [0.0, 0.0, -1.0]: choose another, or flip=True for an open surface that winds the other way"),
     (lambda: api.paths.raster(SHEET, **ALONG, side=(0, np.nan, -1)), "side must be finite, got [0.0, nan, -1.0]"),
     (lambda: api.paths.join([]), "seams: at least one is needed, got none"),
+    (lambda: api.paths.join(bik.paths.raster(SHEET, **ALONG), lift=0.1, surface=SHEET), "lift and surface: give one of them, a tool that lifts off or one that stays on it"),
+    (lambda: api.paths.join(APART, surface=SHEETS), "between seams[0] and seams[1]: the projection of the line jumps by 1 m behind points[0]: give more points, nearer to the surface; or give lift="),
     (lambda: api.paths.join([1]), "seams[0] must be a Seam, got 1"),
 ])  # fmt: skip
 def test_wrong_input_is_told(call: Any, message: str | None) -> None:

@@ -1,5 +1,6 @@
 """Frames along a line on a surface: z into the surface, x along the line, turned gradually at sharp edges."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,9 @@ import numpy as np
 from .checks import Array
 from .seam import Seam, seam_of
 from .triangle_mesh import Indices
+
+CREASE = math.pi / 6
+"""Angle between faces (rad) from which an edge is sharp, by default."""
 
 _PARALLEL = 1e-6  # sine of the angle below which two directions are parallel
 

@@ -11,16 +11,15 @@ from .._core import InvalidInputError, Obstacle
 from ..calls.wording import worded_call
 from .checks import Array, number, require_count
 from .checks import direction as unit
-from .frames_along import Style, frames_along
-from .projection import CREASE
+from .frames_along import CREASE, Style, frames_along
+from .projection import ROUNDED, STEPS
 from .rows_over import offsets_over
 from .seam import Seam
 from .section import Curve, sections
 from .triangle_mesh import Indices, TriangleMesh, mesh_of
 
-_STEPS = 200  # poses over the diagonal of the surface, by default
-_ROUNDED = 5  # steps before and after an edge, by default
 _FACING = 1e-6  # cosine by which a face must look towards the tool, so that walls do not count
+_TOUCHING = 1e-8  # of the diagonal: pieces that end and begin so near are one
 _KEPT = 0.1  # of a pass that is shorter than its insets
 
 
@@ -52,7 +51,7 @@ def raster(
         direction: direction (3,) of the first row; the part along `side` is left out.
         standoff: distance of the tip from the surface, along the tool's axis (m).
         side: direction (3,) from the part to the tool, away from the surface. Faces that look that way are covered.
-            None: the mean normal of the surface, if it is open.
+            None: the mean normal of an open surface, and from above, (0, 0, 1), for a closed one.
         steepest: largest angle between a covered face's normal and `side` (rad). The default covers all that looks
             towards the tool, up to vertical walls; np.pi covers everything.
         inset: distance of the passes from the border of the covered surface and from its holes (m); None: half the
@@ -67,7 +66,7 @@ def raster(
 
     Raises:
         InvalidInputError: a surface that is none or has one side only, a file that cannot be read, NaN, a direction
-            along `side`, no `side` for a closed surface, or no face that looks towards it.
+            along `side`, no face that looks towards it, or no `side` for a surface that looks to all sides.
         BeetleIkError: trimesh is not installed, and the surface is a file.
 
     For example:
@@ -81,11 +80,11 @@ def raster(
     """
     mesh = mesh_of(surface, flip=flip)
     pitch = number("spacing", spacing, above=True)
-    every = mesh.diagonal / _STEPS if step is None else number("step", step, above=True)
+    every = mesh.diagonal / STEPS if step is None else number("step", step, above=True)
     style = Style(
         standoff=number("standoff", standoff),
         crease=number("crease", crease, most=math.pi),
-        rounding=_ROUNDED * every if rounding is None else number("rounding", rounding),
+        rounding=ROUNDED * every if rounding is None else number("rounding", rounding),
         lead_in=0.0,
         lead_out=0.0,
         lead="normal",
@@ -98,6 +97,7 @@ def raster(
     for row, offset in enumerate(offsets_over(mesh, faces, across, pitch, border)):
         pieces = [_oriented(curve, forward) for curve in sections(mesh, across, offset, faces)]
         pieces.sort(key=lambda curve: float(curve.points[0] @ forward))
+        pieces = _connected(pieces, _TOUCHING * mesh.diagonal)
         for curve in pieces if row % 2 == 0 else [_reversed(curve) for curve in reversed(pieces)]:
             at, on = _sampled(curve, every, 0.0 if curve.closed else border)
             passes.append(frames_along(at, mesh.normals_at(at, on, style.crease), style, closed=curve.closed))
@@ -110,7 +110,7 @@ def _side(mesh: TriangleMesh, side: ArrayLike | None) -> Array:
     if side is not None:
         return unit("side", side)
     if mesh.closed:
-        raise InvalidInputError("side= is needed: the surface is closed; it is the direction from the part to the tool")
+        return np.array([0.0, 0.0, 1.0])
     mean = mesh.areas @ mesh.normals
     if np.linalg.norm(mean) < 1e-6 * mesh.areas.sum():
         raise InvalidInputError("side= is needed: the normals of the surface point to all sides")
@@ -147,6 +147,20 @@ def _oriented(curve: Curve, forward: Array) -> Curve:
     first = int((curve.points[:-1] @ forward).argmin())
     points = np.roll(curve.points[:-1], -first, axis=0)
     return Curve(np.concatenate([points, points[:1]]), np.roll(curve.faces, -first), True)
+
+
+def _connected(pieces: list[Curve], gap: float) -> list[Curve]:
+    """Joins pieces that meet end to start: where triangles meet at a part of an edge, their section is in two."""
+    whole: list[Curve] = []
+    for curve in pieces:
+        last = whole[-1] if whole else curve
+        if whole and not last.closed and np.linalg.norm(last.points[-1] - curve.points[0]) <= gap:
+            whole[-1] = Curve(
+                np.concatenate([last.points[:-1], curve.points]), np.append(last.faces, curve.faces), False
+            )
+        else:
+            whole.append(curve)
+    return whole
 
 
 def _reversed(curve: Curve) -> Curve:

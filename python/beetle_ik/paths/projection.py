@@ -10,16 +10,13 @@ from numpy.typing import ArrayLike
 from .._core import InvalidInputError, Obstacle
 from ..calls.wording import worded_call
 from .checks import Array, choice, number, require_count, rows
-from .frames_along import Style, frames_along
+from .frames_along import CREASE, Style, frames_along
 from .nearest import nearest
 from .seam import Seam
 from .triangle_mesh import Indices, TriangleMesh, mesh_of
 
-CREASE = math.pi / 6
-"""Angle between faces (rad) from which an edge is sharp."""
-
-_STEPS = 200  # poses over the diagonal of the surface, by default
-_ROUNDED = 5  # steps before and after an edge, by default
+STEPS = 200  # poses over the diagonal of the surface, by default
+ROUNDED = 5  # steps before and after an edge, by default
 _HALVINGS = 8  # of a line whose projection jumps
 _GAP = 4.0  # steps that a projection may jump
 _WITHIN = 0.1  # of the diagonal of the surface, by default
@@ -88,21 +85,21 @@ def on_surface(
     line = rows("points", points, 3, 2)
     if not isinstance(closed, bool):
         raise InvalidInputError(f"closed must be True or False, got {closed!r:.60}")
-    spacing = mesh.diagonal / _STEPS if step is None else number("step", step, above=True)
+    spacing = mesh.diagonal / STEPS if step is None else number("step", step, above=True)
     style = Style(
         standoff=number("standoff", standoff),
         crease=number("crease", crease, most=math.pi),
-        rounding=_ROUNDED * spacing if rounding is None else number("rounding", rounding),
+        rounding=ROUNDED * spacing if rounding is None else number("rounding", rounding),
         lead_in=number("lead_in", lead_in),
         lead_out=number("lead_out", lead_out),
         lead=choice("lead", lead, "normal", "tangent"),
     )
     reach = _WITHIN * mesh.diagonal if within is None else number("within", within)
-    at, faces = _projected(mesh, np.concatenate([line, line[:1]]) if closed else line, spacing, reach)
+    at, faces = projected(mesh, np.concatenate([line, line[:1]]) if closed else line, spacing, reach)
     return frames_along(at, mesh.normals_at(at, faces, style.crease), style, closed=closed)
 
 
-def _projected(mesh: TriangleMesh, line: Array, step: float, within: float) -> tuple[Array, Indices]:
+def projected(mesh: TriangleMesh, line: Array, step: float, within: float) -> tuple[Array, Indices]:
     """Returns points (m, 3) on the mesh along a line, no two the same, and their faces (m,)."""
     lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
     require_count("step", step, float(lengths.sum()) / step)

@@ -22,7 +22,7 @@ use ikcore::ik::{
     AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_all_tips, solve_tips,
 };
 use ikcore::interrupt::{checkpoint, interruptible};
-use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack};
+use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack, TipField};
 use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};
 use ikcore::manipulability::{Motion, manipulability, manipulability_all};
 use ikcore::map::{MapGrid, MapLayout, MapOptions};

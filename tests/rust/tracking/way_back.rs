@@ -332,7 +332,7 @@ fn joints_that_equal_limits_lock_are_named_so() {
         let mut session = Session::new(&robot, &start, DT, &TrackOptions::default()).unwrap();
         let target = Target::Position([0.3, 0.13, 0.1]);
         let last = (0..300).map(|_| session.step(&target, &mut Unattended).unwrap()).last().unwrap();
-        let said = last.message().to_string();
+        let said = last.message_with(last.status.advice(), &[], |j| robot.joints()[j].name.clone());
         let holder = match locked.len() {
             1 => "joint 'elbow_joint', locked by equal limits, holds the arm",
             _ => "'shoulder_lift_joint' (locked by equal limits), 'elbow_joint' (locked by equal limits)",

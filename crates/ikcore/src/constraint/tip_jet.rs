@@ -47,8 +47,6 @@ pub(crate) struct TipElements {
 }
 
 impl VectorJet {
-    const ZERO: Self = Self { powers: [[0.0; 3]; ORDER], rest: 0.0, size: 0.0 };
-
     /// The derivative.
     pub fn derivative(&self) -> Self {
         let mut powers = [[0.0; 3]; ORDER];
@@ -197,20 +195,57 @@ impl TipElements {
 
     /// The motion of the tip while the joints follow these polynomials on \[-1, 1\], with the moving elements at `frames` in the middle.
     pub fn jet(&self, robot: &Robot, frames: &[Frame], joints: &[Coefficients]) -> TipJet {
+        let [velocity, turn] = self.series(robot, frames, |motion| {
+            let rates = Rates::of(&joints[motion.joint], motion.scale());
+            // From the middle to an end a slide moves the origin by no more than its fastest rate.
+            let slid = rates.sizes[0];
+            (rates, slid)
+        });
+        TipJet { velocity: velocity.jet(), turn: turn.jet() }
+    }
+
+    /// Bounds of the acceleration of the tip (m/s^2) and of the change of its turn rate (rad/s^2) for joints of these largest velocities and
+    /// accelerations, for `duration` (s) from where the moving elements are at `frames`.
+    pub fn growth(
+        &self,
+        robot: &Robot,
+        frames: &[Frame],
+        largest: impl Fn(usize) -> [f64; 2],
+        duration: f64,
+    ) -> [f64; 2] {
+        let [velocity, turn] = self.series(robot, frames, |motion| {
+            let mut rates = Rates { numbers: [0.0; ORDER], sizes: [0.0; ORDER + 1] };
+            let [rate, change] = largest(motion.joint).map(|largest| largest * motion.scale().abs());
+            (rates.sizes[0], rates.sizes[1]) = (rate, change);
+            (rates, rate * duration)
+        });
+        [velocity.sizes[1], turn.sizes[1]]
+    }
+
+    /// Bounds of the speed (m/s) and the turn speed (rad/s) of the tip for joints of these largest velocities and positions, with the moving elements
+    /// at `frames` where all joints are zero.
+    pub fn fastest(&self, robot: &Robot, frames: &[Frame], [velocity, position]: [&[f64]; 2]) -> [f64; 2] {
+        let [linear, turn] = self.series(robot, frames, |motion| {
+            let mut rates = Rates { numbers: [0.0; ORDER], sizes: [0.0; ORDER + 1] };
+            rates.sizes[0] = velocity[motion.joint] * motion.scale().abs();
+            (rates, position[motion.joint] * motion.scale().abs())
+        });
+        [linear.sizes[0], turn.sizes[0]]
+    }
+
+    /// Coefficients of the velocity and the turn rate of the tip, for elements of these rates, that slide by this distance at most.
+    fn series(&self, robot: &Robot, frames: &[Frame], of: impl Fn(&Transmission) -> (Rates, f64)) -> [Series; 2] {
         let (mut turn, mut velocity) = (Series::ZERO, Series::ZERO);
         let mut before: Option<Vector> = None;
         for (frame, motion) in &self.elements {
             let Frame { axes: [_, _, axis], origin } = frames[*frame];
-            let scale = if motion.turn_scale == 0.0 { motion.slide_scale } else { motion.turn_scale };
-            let rates = Rates::of(&joints[motion.joint], scale);
+            let (rates, slid) = of(motion);
             let [axis, _] = Series::carried(&turn, axis, 1.0, None);
             let along = axis.times(&rates);
             let slides = motion.turn_scale == 0.0;
             let lever = before.map_or([0.0; 3], |before| sub(&origin, &before));
-            // From the middle to an end a slide moves the origin by no more than its fastest rate.
-            let longest = norm(&lever) + if slides { rates.sizes[0] } else { 0.0 };
-            let [_, change] = Series::carried(&turn, lever, longest, slides.then_some(&along));
-            velocity.add(&change);
+            let longest = norm(&lever) + if slides { slid } else { 0.0 };
+            velocity.add(&Series::carried(&turn, lever, longest, slides.then_some(&along))[1]);
             if !slides {
                 turn.add(&along);
             }
@@ -220,9 +255,6 @@ impl TipElements {
             let lever = sub(&robot.tip_among(self.tip, frames).origin, &before);
             velocity.add(&Series::carried(&turn, lever, norm(&lever), None)[1]);
         }
-        if self.elements.is_empty() {
-            return TipJet { velocity: VectorJet::ZERO, turn: VectorJet::ZERO };
-        }
-        TipJet { velocity: velocity.jet(), turn: turn.jet() }
+        [velocity, turn]
     }
 }

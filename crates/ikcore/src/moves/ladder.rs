@@ -246,7 +246,7 @@ impl<'a> Ladder<'a> {
                 let n = self.robot.dof();
                 let tracks = tracks.iter().map(|track| Track {
                     knots: track.knots.clone(),
-                    rows: track.rows.chunks_exact(n).flat_map(|row| moved(row)).collect(),
+                    rows: track.rows.chunks_exact(n).flat_map(&moved).collect(),
                 });
                 let tracks = tracks.collect();
                 rungs.push(self.after(before, q, tracks));

@@ -4,15 +4,20 @@ use super::timing::PathTime;
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::math::Columns;
-use crate::math::polynomial::evaluate;
 use crate::math::so3::norm;
 use crate::plan::SpeedBound;
 use crate::robot::Robot;
-use crate::timing::ConstantLimits;
-use crate::trajectory::{Coefficients, Trajectory};
+use crate::timing::{ConstantLimits, OneLimit};
+use crate::trajectory::Trajectory;
 
 /// Shortfall of the speed, as a fraction of the one asked for, that counts as none.
 const SHORT: f64 = 1e-3;
+
+/// Part of the tightest limit's share at which another one is still named, so that names do not alternate between joints that share a motion.
+const STILL: f64 = 0.95;
+
+/// What stands for the limits of an arm without joints.
+const NO_LIMIT: (OneLimit, f64) = (OneLimit::Joint(0, "velocity"), 0.0);
 
 /// Largest speed of the tip on move `index` of a path (m/s), between its corners.
 pub(super) fn speed_on(path: &ToolPath, index: usize, times: &[PathTime]) -> f64 {
@@ -30,70 +35,46 @@ pub(super) fn bounds_on(
     (motion, times, begin): (&Trajectory, &[PathTime], f64),
     limits: &ConstantLimits,
 ) -> Vec<SpeedBound> {
-    let mut bounds: Vec<SpeedBound> = vec![];
     let Some((piece, asked)) = path.pieces.iter().enumerate().find_map(|(i, piece)| {
         let is_it = piece.index == index && !piece.is_corner();
         piece.speed.filter(|_| is_it).map(|speed| (i, speed))
     }) else {
-        return bounds;
+        return vec![];
     };
     let [from, to] = [path.breaks[piece], path.breaks[piece + 1]];
-    let mut is_slow_before = false;
-    for (i, at) in times.iter().enumerate() {
-        if at.s < from || at.s > to {
-            continue;
-        }
+    let mut spans: Vec<(OneLimit, [f64; 2])> = vec![];
+    let mut binding = None;
+    for (i, at) in times.iter().enumerate().filter(|(_, at)| from <= at.s && at.s <= to) {
         let is_slow = at.rate < asked * (1.0 - SHORT);
-        // A span reaches to the next sample on both sides, so that nothing slow is outside of it.
-        let [before, after] = [i.saturating_sub(1), (i + 1).min(times.len() - 1)].map(|i| begin + times[i].t);
-        if is_slow {
-            let (joint, limit) = tightest(motion, at.t, limits);
-            match bounds.last_mut() {
-                Some(bound) if is_slow_before && bound.joint == joint && bound.limit == limit => bound.end = after,
-                _ => bounds.push(SpeedBound { joint: joint.into(), limit: limit.into(), start: before, end: after }),
+        let limit = is_slow.then(|| tightest(motion, at.t, limits, binding));
+        if let Some(limit) = limit {
+            // A span reaches to the next sample on both sides, so that nothing slow is outside of it.
+            let [before, after] = [i.saturating_sub(1), (i + 1).min(times.len() - 1)].map(|i| begin + times[i].t);
+            match spans.last_mut() {
+                Some((_, [_, end])) if binding == Some(limit) => *end = after,
+                _ => spans.push((limit, [before, after])),
             }
         }
-        is_slow_before = is_slow;
+        binding = limit;
     }
-    for i in 1..bounds.len() {
-        let start = bounds[i].start;
-        bounds[i - 1].end = bounds[i - 1].end.min(start.max(bounds[i - 1].start));
+    for i in 1..spans.len() {
+        let start = spans[i].1[0];
+        let [begin, end] = spans[i - 1].1;
+        spans[i - 1].1 = [begin, end.min(start.max(begin))];
     }
-    bounds
+    let bound = |(limit, [start, end]): (OneLimit, [f64; 2])| {
+        let [limit, of] = limits.names(limit);
+        SpeedBound { limit, of, start, end }
+    };
+    spans.into_iter().map(bound).collect()
 }
 
-/// The joint and the limit that leave the least room at `t`.
-fn tightest<'a>(motion: &Trajectory, t: f64, limits: &'a ConstantLimits) -> (&'a str, &'static str) {
-    let n = limits.dof();
-    let segment = motion.knots().partition_point(|knot| *knot <= t).clamp(1, motion.knots().len() - 1) - 1;
-    let elapsed = t - motion.knots()[segment];
-    let mut best = (f64::NEG_INFINITY, 0, "velocity");
-    for joint in 0..n {
-        let polynomial = &motion.coefficients()[segment * n + joint];
-        let [_, velocity, acceleration] = evaluate(polynomial, elapsed);
-        let used = [
-            (velocity, limits.velocity[joint], "velocity"),
-            (acceleration, limits.acceleration[joint], "acceleration"),
-            (jerk(polynomial, elapsed), limits.jerk[joint], "jerk"),
-        ];
-        for (value, limit, name) in used {
-            let share = value.abs() / limit;
-            if share > best.0 {
-                best = (share, joint, name);
-            }
-        }
-    }
-    (limits.joint_name(best.1), best.2)
-}
-
-/// Third derivative of a polynomial at `s`.
-fn jerk(polynomial: &Coefficients, s: f64) -> f64 {
-    polynomial
-        .iter()
-        .enumerate()
-        .skip(3)
-        .rev()
-        .fold(0.0, |sum, (power, c)| sum * s + (power * (power - 1) * (power - 2)) as f64 * c)
+/// The limit that leaves the least room at `t`; still the one `before` where that leaves hardly more.
+fn tightest(motion: &Trajectory, t: f64, limits: &ConstantLimits, before: Option<OneLimit>) -> OneLimit {
+    let shares = limits.shares(motion, t);
+    let share = |limit: OneLimit| shares.iter().find(|(one, _)| *one == limit).map_or(0.0, |(_, share)| *share);
+    let (tightest, most) = shares.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(NO_LIMIT);
+    before.filter(|before| share(*before) >= STILL * most).unwrap_or(tightest)
 }
 
 /// Largest speed of the tip along a joint move (m/s), between these times of a motion (s).

@@ -258,8 +258,9 @@ impl MotionCertificate {
     fn verdict(&self, scene: &Scene<'_>, pair: BodyPair, interval: &Interval, kept: &RequiredDistance<'_>) -> Verdict {
         let [first, last] = interval.ends.map(|end| &self.samples[end].frames);
         let [needed_first, needed_last] = [interval.from, interval.to].map(|tick| kept.needed(pair, tick));
-        let is_passed = interval.to <= 0.0;
-        let needed = if is_passed { needed_last.max(needed_first) } else { needed_last };
+        // Control point before the interval, if the arm has passed all of the interval's but that of the command.
+        let passed = self.outside.first().filter(|_| interval.from < 0.0 && interval.to <= 0.0);
+        let needed = if passed.is_some() { needed_last.max(needed_first) } else { needed_last };
         let (change_first, change_last) =
             (scene.change_at(pair, first, &self.halfway), scene.change_at(pair, last, &self.halfway));
         let at_first = scene.distance_at(pair, first, needed + change_first);
@@ -281,10 +282,14 @@ impl MotionCertificate {
         if gap.is_some_and(|gap| gap.before.min(gap.after) >= needed) {
             return Verdict::Clear;
         }
-        let was_too_near =
-            || at_first.min(at_last).min(scene.distance_at(pair, &self.outside[0].frames, needed)) < needed;
         let comes_no_nearer = gap.is_none_or(|gap| gap.after >= gap.before);
-        if is_passed && comes_no_nearer && was_too_near() { Verdict::Clear } else { Verdict::Open }
+        match passed {
+            Some(before) if comes_no_nearer => {
+                let at_before = scene.distance_at(pair, &before.frames, needed);
+                if at_first.min(at_last).min(at_before) < needed { Verdict::Clear } else { Verdict::Open }
+            }
+            _ => Verdict::Open,
+        }
     }
 
     /// Gap between a body and an obstacle on both sides of one plane in the whole interval; `None` for links, and without such a plane.

@@ -21,10 +21,10 @@ pub struct MoveReport {
 /// A limit that keeps the tip below the speed asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedBound {
-    /// Name of the joint.
-    pub joint: String,
-    /// The limit: "velocity", "acceleration" or "jerk".
+    /// The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed".
     pub limit: String,
+    /// Name of the joint, or of the tip.
+    pub of: String,
     /// From when (s).
     pub start: f64,
     /// Until when (s).

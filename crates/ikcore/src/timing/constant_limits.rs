@@ -74,6 +74,9 @@ impl ConstantLimits {
         let tips = TipRates::new(robot, limits.tips(), method.clone())?;
         let constant = Self::read(&limits, joints, method, "give numbers")?;
         limits.require_unlocked()?;
+        let farthest = constant.lower.iter().zip(&constant.upper).map(|(lower, upper)| lower.abs().max(upper.abs()));
+        let farthest: Vec<f64> = farthest.collect();
+        let tips = tips.and_then(|tips| tips.without_idle([&constant.velocity, &farthest]));
         Ok(Self { tips, ..constant })
     }
 

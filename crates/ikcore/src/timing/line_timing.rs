@@ -39,26 +39,37 @@ impl JointPolyline {
     /// Returns the faster of the motions with stops and with blends.
     pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
         let stopping = self.with_stops(limits)?;
-        match self.with_blends(limits, fractions).transpose()? {
-            Some(blended) if blended.duration() < stopping.duration() => Ok(blended),
-            _ => Ok(stopping),
+        match self.with_free_blends(limits, fractions).transpose()? {
+            Some(blended) => {
+                let blended = self.paced(blended, limits)?;
+                Ok(if blended.duration() < stopping.duration() { blended } else { stopping })
+            }
+            None => Ok(stopping),
         }
     }
 
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
-    ///
-    /// Where limits of tips would slow the motion down as a whole, it slows down where they bind instead, if accelerations may jump.
     pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         if limits.limit_jerk() {
             return self.with_stops_and_jerk(limits);
         }
-        let motion = self.with_quintics(limits)?;
+        self.paced(self.with_quintics(limits)?, limits)
+    }
+
+    /// Returns `motion`, made for these lines, within the limits of tips: slowed down as a whole or, if accelerations may jump, the fastest motion
+    /// along the lines, which slows down where they bind. Neither is faster than `motion`, so that looser limits are never slower.
+    fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+        if limits.tips.is_none() {
+            return Ok(motion);
+        }
         let slowed = limits.within_tip_limits(motion.clone())?;
-        if slowed == motion || limits.require_accelerations("lines").is_err() {
+        if slowed == motion || limits.limit_jerk() || limits.require_accelerations("lines").is_err() {
             return Ok(slowed);
         }
-        let paced = time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default())?;
-        Ok(if paced.duration() < slowed.duration() { paced } else { slowed })
+        let along = time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default())?;
+        let ahead = motion.duration() / along.duration();
+        let along = if ahead > 1.0 { along.slowed(ahead)? } else { along };
+        Ok(if along.duration() < slowed.duration() { along } else { slowed })
     }
 
     /// Moves from rest to rest along each line by a quintic.
@@ -103,12 +114,17 @@ impl JointPolyline {
     /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
     pub(crate) fn with_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
+        let motion = self.with_free_blends(limits, fractions)?;
+        Some(motion.and_then(|motion| limits.within_tip_limits(motion)))
+    }
+
+    /// [`with_blends`](Self::with_blends) without regard to tips.
+    fn with_free_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
         let times = self.blend_times(limits, fractions)?;
         let motion = self.blended(limits, &times);
         // A blend that is just too short exceeds a jerk limit by twice as much.
         let excess = if limits.limit_jerk() { 2.0 * TOO_SHORT } else { 0.0 };
-        let motion = if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion };
-        Some(motion.and_then(|motion| limits.within_tip_limits(motion)))
+        Some(if excess > 0.0 { motion.and_then(|motion| motion.slowed(1.0 + excess)) } else { motion })
     }
 
     /// The times of the motion with blends.

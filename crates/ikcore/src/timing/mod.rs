@@ -19,6 +19,7 @@
 //! | `line_timing` | the fastest smooth timing of straight lines |
 //! | `quintic` | the quintic from rest to rest |
 //! | `time_scaling` | scaling of a whole motion in time, to its limits |
+//! | `limit_share` | how much of each limit a motion uses |
 //! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
 
 mod compose;
@@ -28,6 +29,7 @@ mod grid;
 mod jerk_limited;
 mod joint_path;
 mod least_bending;
+mod limit_share;
 mod line_timing;
 mod polyline;
 mod quintic;
@@ -46,6 +48,7 @@ mod within_tolerance;
 pub use crate::math::cubic_spline::SplineEnds;
 pub use constant_limits::ConstantLimits;
 pub use joint_path::JointPath;
+pub(crate) use limit_share::OneLimit;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};

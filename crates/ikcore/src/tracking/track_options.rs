@@ -124,7 +124,7 @@ impl TrackOptions {
         let limits = self.limits.clone().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         limits.require_pace_or_consent()?;
-        limits.refuse_tips(&TipField::ALL, "track", "a plan keeps them")?;
+        limits.refuse_tips(&[TipField::Acceleration], "track", "a plan keeps them")?;
         Ok(limits)
     }
 }

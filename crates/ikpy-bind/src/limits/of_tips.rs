@@ -88,5 +88,5 @@ fn positive(what: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     if limit > 0.0 {
         return Ok(limit);
     }
-    Err(limit_error(format!("{what} is {}: it must be positive; None means no limit", limit.text())))
+    Err(limit_error(format!("{what} is {limit}: it must be positive; None means no limit")))
 }

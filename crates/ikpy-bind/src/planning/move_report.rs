@@ -77,16 +77,16 @@ pub struct PySpeedBound(pub SpeedBound);
 
 #[pymethods]
 impl PySpeedBound {
-    /// Name of the joint that is nearest to a limit there.
-    #[getter]
-    fn joint(&self) -> &str {
-        &self.0.joint
-    }
-
-    /// The limit: "velocity", "acceleration" or "jerk".
+    /// The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed".
     #[getter]
     fn limit(&self) -> &str {
         &self.0.limit
+    }
+
+    /// Name of the joint, or of the tip.
+    #[getter]
+    fn of(&self) -> &str {
+        &self.0.of
     }
 
     /// From when (s).
@@ -120,6 +120,6 @@ impl PySpeedBound {
     }
 }
 
-fn words(SpeedBound { joint, limit, start, end }: &SpeedBound) -> String {
-    format!("{limit} of joint '{joint}' from {start:.3} to {end:.3} s")
+fn words(SpeedBound { limit, of, start, end }: &SpeedBound) -> String {
+    format!("{limit} of '{of}' from {start:.3} to {end:.3} s")
 }

@@ -38,7 +38,11 @@ Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; d
 
 
 def options(
-    velocity: str | None, acceleration: str | None, jerk: str | None, max_evaluations: int | None
+    velocity: str | None,
+    acceleration: str | None,
+    jerk: str | None,
+    tip_speed: float | None,
+    max_evaluations: int | None,
 ) -> dict[str, Any]:
     """Returns the keywords common to both planners."""
     chosen: dict[str, Any] = {
@@ -46,6 +50,7 @@ def options(
             velocity=limit("--velocity-limit", velocity),
             acceleration=limit("--acceleration-limit", acceleration),
             jerk=limit("--jerk-limit", jerk),
+            tip_speed=tip_speed,
         ),
     }
     if max_evaluations is not None:

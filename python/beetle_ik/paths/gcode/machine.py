@@ -160,6 +160,8 @@ class Machine:
         if math.isnan(sum(start)) or math.isnan(sum(end)):
             if kind == "arc":
                 raise refused(line.number, "an arc from a place that is not known: give start=")
+            if kind != "rapid":
+                self.told.append((line.number, line.text))
             return None if math.isnan(sum(end)) else Part("rapid", line.number, [end], math.nan, 0.0)
         if kind != "rapid" and math.isnan(self.feed):
             raise refused(line.number, f"{line.text:.40}: no F before it, so that its speed is not known: give feed=")

@@ -42,8 +42,8 @@ class GcodeProgram:
         rapid: whether each step is rapid, (m - 1,).
         feeds: speed of the tip in each step (m - 1,) (m/s); NaN where it is rapid.
         extrusion: length that a printer extrudes in each step (m - 1,) (m), from the E words.
-        ignored: lines that move nothing and have no effect on the path, a list of (line, text): coolant, temperatures,
-            waits, homing, commands of firmware.
+        ignored: lines without effect on the path, a list of (line, text): coolant, temperatures, waits, homing,
+            commands of firmware, and moves from or to a position that is not known.
     """
 
     poses: Array

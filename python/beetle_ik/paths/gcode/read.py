@@ -23,7 +23,7 @@ def from_gcode(
     *,
     frame: ArrayLike | None = None,
     axis: ArrayLike = (0.0, 0.0, -1.0),
-    start: ArrayLike | None = None,
+    start: ArrayLike | None = (0.0, 0.0, 0.0),
     feed: float | None = None,
     tolerance: float = 1e-5,
     rotary: bool = False,
@@ -32,17 +32,18 @@ def from_gcode(
 
     It reads G0 to G3, arcs by centre (I, J, K) or radius (R) in the planes of G17 to G19, also as helices, inches and
     millimetres (G20, G21), absolute and relative positions (G90, G91; centres G90.1, G91.1), feeds per minute (F), and
-    lengths of filament (E; M82, M83, G92 E). Millimetres and absolute positions hold at first. The path begins where X,
-    Y and Z are first all known; after homing (G28) it goes on, by a rapid move, where they are known again. Commands
-    that move nothing are listed in `ignored`. All else is refused, by its line: canned cycles, splines, tool
-    compensation, new origins, parameters and subprograms.
+    lengths of filament (E; M82, M83, G92 E). Millimetres and absolute positions hold at first. After homing (G28) the
+    position is not known; the path goes on, by a rapid move, where X, Y and Z have been given again. Commands that move
+    nothing are listed in `ignored`. All else is refused, by its line: canned cycles, splines, tool compensation, new
+    origins, parameters and subprograms.
 
     Args:
         file: a file; or the program itself, a text of at least two lines.
         frame: pose (4, 4) of the program's origin in the frame of the robot's base; None: they agree.
         axis: direction (3,) of the tool's z axis, in the frame of the program; the default points down. The tool's x
             axis is as near to the program's X as it can be, or to Y where `axis` is along X.
-        start: position (3,) (m) of the tip before the first line, in the frame of the program; None: not known.
+        start: position (3,) (m) of the tip before the first line, in the frame of the program, where the path begins;
+            None: not known, and the path begins where X, Y and Z have all been given.
         feed: speed before the first F (m/s); None: a move without it is refused.
         tolerance: largest distance of the steps of an arc from it (m).
         rotary: whether to read A, B and C, rotations (deg) of the tool relative to the part about the program's X, Y
@@ -112,6 +113,7 @@ def _tool(axis: Array) -> Array:
 def _program(machine: Machine, text: str, base: Array, tool: Array) -> GcodeProgram:
     parts, began, count = list[Part](), machine.place, 0
     for line in lines(text):
+        began = began if parts else machine.place
         part = machine.run(line)
         if part is not None:
             parts.append(part)

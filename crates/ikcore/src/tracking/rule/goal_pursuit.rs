@@ -7,6 +7,7 @@
 
 use super::tick::{BY_LEVELS, Tick, TickResult};
 use crate::ik::{LevelDescent, RankedDescent};
+use crate::limits::Field;
 use crate::math::vector::{distance, largest_difference};
 use crate::motion::{GoalSample, JointState, MovingGoal, Pursuit};
 use crate::objective::{Bounds, Linearization, Point};
@@ -287,10 +288,10 @@ impl GoalPursuit {
 }
 
 /// Moves the command of joints that pursue their goals one by one to the nearest that meets the lowest level of the targets, as far as
-/// the tick allows.
+/// the tick allows. Under jerk limits the command stays: the corrections of one tick would set those of the next swinging.
 fn keep_lowest_level(found: &mut TickResult, tick: &Tick<'_>) {
-    let StepContext { robot, aims, .. } = tick.context;
-    if !tick.has_levels() {
+    let StepContext { robot, aims, limits, .. } = tick.context;
+    if !tick.has_levels() || limits.is_finite(Field::Jerk) {
         return;
     }
     let levels = Levels::of(&aims);
