@@ -197,6 +197,10 @@ WRONG: list[tuple[list[Any], str]] = [
         "as the end, and the angle",
     ),
     (
+        [Line(shifted(y=0.1), blend=0.2), Line(shifted())],
+        "move 0: its blend of 0.2 m does not fit into move 0, which is 0.1000 m long: make the blend smaller",
+    ),
+    (
         [Line(shifted(y=0.1), blend=0.01), Line(shifted(y=0.1))],
         "move 0: its blend has no room, because move 1 ends where it begins: leave that out, or give no blend",
     ),
