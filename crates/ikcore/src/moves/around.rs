@@ -12,13 +12,13 @@ const ADVICE: &str = "move the path or what is in the way, or lower the margin";
 
 /// Obstacles, links, and what must hold at every instant.
 #[derive(Clone, Copy)]
-pub(super) struct Around<'a> {
+pub(super) struct MoveSurroundings<'a> {
     pub robot: &'a Robot,
     pub space: Option<&'a ClearSpace<'a>>,
     pub keeps: &'a [Keep],
 }
 
-impl Around<'_> {
+impl MoveSurroundings<'_> {
     /// Whether any motion is as good as another.
     pub fn is_free(&self) -> bool {
         self.space.is_none() && self.keeps.is_empty()

@@ -1,12 +1,12 @@
 //! The motion of a whole program, step by step.
 
-use super::around::Around;
+use super::around::MoveSurroundings;
 use super::ladder::Rung;
 use super::moves_options::MovesOptions;
-use super::outline::{Stage, Step};
+use super::outline::{Stage, StageKind};
 use super::program::Move;
 use super::report::{bounds_on, speed_on, tip_speed};
-use super::run::{Part, Run};
+use super::run::{Run, RunPart};
 use super::timing::{PathTime, path_times, time_at, timed};
 use crate::error::{Error, Result};
 use crate::free_path;
@@ -22,7 +22,7 @@ const NOTHING: f64 = 1e-9;
 
 /// The motion so far, and its moves.
 pub(super) struct Assembly<'a> {
-    around: Around<'a>,
+    around: MoveSurroundings<'a>,
     limits: &'a ConstantLimits,
     moves: &'a [Move],
     options: &'a MovesOptions,
@@ -34,7 +34,7 @@ pub(super) struct Assembly<'a> {
 
 impl<'a> Assembly<'a> {
     pub fn new(
-        around: Around<'a>,
+        around: MoveSurroundings<'a>,
         limits: &'a ConstantLimits,
         moves: &'a [Move],
         options: &'a MovesOptions,
@@ -55,11 +55,11 @@ impl<'a> Assembly<'a> {
         monitor: &mut dyn Monitor,
     ) -> Result<()> {
         let (mut starts, mut paths) = (rungs.iter().skip(1), paths.into_iter());
-        let (mut parts, mut radii): (Vec<Part<'a>>, Vec<f64>) = (vec![], vec![]);
-        for Stage { step, blend } in stages {
-            match step {
-                Step::Rest(index, seconds) => self.rest(*index, *seconds)?,
-                Step::Joints(index) => {
+        let (mut parts, mut radii): (Vec<RunPart<'a>>, Vec<f64>) = (vec![], vec![]);
+        for Stage { kind, blend } in stages {
+            match kind {
+                StageKind::Rest(index, seconds) => self.rest(*index, *seconds)?,
+                StageKind::Joints(index) => {
                     let Some(rung) = starts.next() else { continue };
                     let from = parts.last().map_or_else(|| self.q.clone(), end_of);
                     let is_still = largest_difference(&from, &rung.q) <= NOTHING;
@@ -71,11 +71,11 @@ impl<'a> Assembly<'a> {
                         return Err(self.without_room(*index, parts.last()));
                     }
                     let path = JointPath::polyline(self.limits.joint_names(), &[&from[..], &rung.q].concat(), 0.0)?;
-                    parts.push(Part { index: *index, tool_path: None, path });
+                    parts.push(RunPart { index: *index, tool_path: None, path });
                 }
-                Step::Along(tool_path) => {
+                StageKind::Along(tool_path) => {
                     let Some(path) = paths.next() else { continue };
-                    parts.push(Part { index: tool_path.pieces[0].index, tool_path: Some(tool_path), path });
+                    parts.push(RunPart { index: tool_path.pieces[0].index, tool_path: Some(tool_path), path });
                 }
             }
             if *blend > 0.0 {
@@ -88,7 +88,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds parts with rounded corners between them where that is possible and clear, else with stops.
-    fn go(&mut self, parts: Vec<Part<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
+    fn go(&mut self, parts: Vec<RunPart<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
         if !radii.is_empty()
             && let Some(run) = Run::rounded(self.around.robot, self.limits, &parts, &radii)?
         {
@@ -186,7 +186,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds a motion to the end of a joint move that keeps clear of everything, and keeps what is to be kept.
-    fn way_around(&mut self, part: &Part<'_>, monitor: &mut dyn Monitor) -> Result<()> {
+    fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
         let MovesOptions { surroundings, keeps, limits, stop, seed } = self.options;
         let options = PointToPointOptions {
             end_turns: EndTurns::AsGiven,
@@ -198,7 +198,7 @@ impl<'a> Assembly<'a> {
             ..PointToPointOptions::default()
         };
         let [start, end] = [self.q.clone(), end_of(part)].map(Endpoint::Configuration);
-        let Around { robot, space, .. } = self.around;
+        let MoveSurroundings { robot, space, .. } = self.around;
         let plan = free_path::point_to_point(robot, &start, &[end], space, &options, monitor)?;
         let fault = if plan.violations.is_empty() && plan.obstruction.is_none() {
             self.around.fault_on(&plan.trajectory)?.map(Into::into)
@@ -219,7 +219,7 @@ impl<'a> Assembly<'a> {
         Error::NotFound { what: format!("a motion along {}", self.moves[index].named(index)), problem }
     }
 
-    fn without_room(&self, index: usize, before: Option<&Part<'_>>) -> Error {
+    fn without_room(&self, index: usize, before: Option<&RunPart<'_>>) -> Error {
         let with_blend = if before.is_some() { index - 1 } else { index };
         let still = self.moves[index].named(index);
         let problem =
@@ -229,7 +229,7 @@ impl<'a> Assembly<'a> {
 }
 
 /// Joint positions at the end of a part.
-fn end_of(part: &Part<'_>) -> Vec<f64> {
+fn end_of(part: &RunPart<'_>) -> Vec<f64> {
     let mut q = vec![0.0; part.path.joints().len()];
     part.path.position(part.path.breaks()[part.path.pieces()], &mut q);
     q

@@ -4,9 +4,9 @@
 //! start: a branch and whole turns, or also the self-motion of a redundant arm. A configuration from which a joint meets its limit on
 //! one of the paths of its block is no candidate. Of the sequences of candidates, the quickest is taken.
 
-use super::around::Around;
+use super::around::MoveSurroundings;
 use super::follower::{Follower, Lost, Track};
-use super::outline::{Stage, Step};
+use super::outline::{Stage, StageKind};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
 use crate::error::Result;
@@ -37,7 +37,7 @@ const SAME: f64 = 1e-6;
 
 /// A block of a program.
 #[derive(Debug)]
-pub(super) struct Block<'a> {
+pub(super) struct LadderBlock<'a> {
     /// The joint move at its start; `None` for what comes before the first joint move.
     pub goal: Option<(usize, &'a JointGoal)>,
     /// The paths of the tip after it.
@@ -82,21 +82,21 @@ impl Rung {
 }
 
 /// The blocks of a program.
-pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<Block<'a>> {
-    let mut blocks = vec![Block { goal: None, paths: vec![] }];
-    for Stage { step, .. } in stages {
-        match step {
-            Step::Joints(index) => {
+pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<LadderBlock<'a>> {
+    let mut blocks = vec![LadderBlock { goal: None, paths: vec![] }];
+    for Stage { kind, .. } in stages {
+        match kind {
+            StageKind::Joints(index) => {
                 if let MoveKind::Joints(goal) = &moves[*index].kind {
-                    blocks.push(Block { goal: Some((*index, goal)), paths: vec![] });
+                    blocks.push(LadderBlock { goal: Some((*index, goal)), paths: vec![] });
                 }
             }
-            Step::Along(path) => {
+            StageKind::Along(path) => {
                 if let Some(block) = blocks.last_mut() {
                     block.paths.push(path);
                 }
             }
-            Step::Rest(..) => {}
+            StageKind::Rest(..) => {}
         }
     }
     blocks
@@ -106,7 +106,7 @@ pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<Block<'a
 pub(super) struct Ladder<'a> {
     robot: &'a Robot,
     limits: &'a ConstantLimits,
-    around: Around<'a>,
+    around: MoveSurroundings<'a>,
     /// Whether the tip's pose leaves the arm a self-motion.
     is_redundant: bool,
     follower: Follower<'a>,
@@ -116,7 +116,7 @@ pub(super) struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(around: Around<'a>, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
+    pub fn new(around: MoveSurroundings<'a>, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
         let robot = around.robot;
         let is_redundant = robot.dof() > 6;
         let bounds = if is_redundant {
@@ -140,7 +140,7 @@ impl<'a> Ladder<'a> {
     /// Those of `solve_all`.
     pub fn climb(
         &mut self,
-        blocks: &[Block<'_>],
+        blocks: &[LadderBlock<'_>],
         start: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Rung>, (usize, Dead)>> {

@@ -11,7 +11,7 @@ use crate::wording::number;
 
 /// A part of a program, from rest to rest.
 #[derive(Debug, Clone)]
-pub(super) enum Step {
+pub(super) enum StageKind {
     /// The joint move of this index.
     Joints(usize),
     /// Moves of the tip that blend into one another.
@@ -23,7 +23,7 @@ pub(super) enum Step {
 /// A step, and the radius (m) of the blend into the next one; 0: the arm stops.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
-    pub step: Step,
+    pub kind: StageKind,
     pub blend: f64,
 }
 
@@ -37,11 +37,11 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Ve
     let mut pose: Pose = robot.tip(start).into();
     for (i, each) in moves.iter().enumerate() {
         let blend = if i + 1 < moves.len() { each.blend } else { 0.0 };
-        let mut push = |step: Step, blend: f64| stages.push(Stage { step, blend });
+        let mut push = |kind: StageKind, blend: f64| stages.push(Stage { kind, blend });
         match &each.kind {
-            MoveKind::Wait(seconds) => push(Step::Rest(i, *seconds), 0.0),
+            MoveKind::Wait(seconds) => push(StageKind::Rest(i, *seconds), 0.0),
             MoveKind::Joints(goal) => {
-                push(Step::Joints(i), blend);
+                push(StageKind::Joints(i), blend);
                 pose = match goal {
                     JointGoal::Configuration(q) => robot.tip(q).into(),
                     JointGoal::Pose(goal) => *goal,
@@ -53,19 +53,19 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Ve
                     if let Some(with_blend) = before.or((blend > 0.0).then_some(i)) {
                         return Err(no_room(moves, with_blend, i));
                     }
-                    push(Step::Rest(i, 0.0), 0.0);
+                    push(StageKind::Rest(i, 0.0), 0.0);
                 }
                 Some(leg) => {
                     pose = end_of(&leg, each);
                     require_length(moves, i, &leg)?;
                     // No smooth curve leads back: the arm stops there.
                     if legs.last().is_some_and(|before| Corner::turns_back(before, &leg)) {
-                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), 0.0);
+                        push(StageKind::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), 0.0);
                     }
                     legs.push(leg);
                     let goes_on = blend > 0.0 && moves[i + 1].is_cartesian();
                     if !goes_on {
-                        push(Step::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), blend);
+                        push(StageKind::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), blend);
                     }
                 }
             },

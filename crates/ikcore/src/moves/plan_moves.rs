@@ -1,8 +1,8 @@
 //! The call `plan_moves`.
 
-use super::around::Around;
+use super::around::MoveSurroundings;
 use super::assembly::Assembly;
-use super::ladder::{Block, Cause, Dead, Ladder, Rung, blocks};
+use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung, blocks};
 use super::moves_options::MovesOptions;
 use super::outline::outline;
 use super::program::{JointGoal, Move, MoveKind, check_program};
@@ -46,7 +46,7 @@ pub fn plan_moves(
     limits.require_accelerations(METHOD)?;
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let space = options.surroundings.clear_space(robot)?;
-    let around = Around { robot, space: space.as_ref(), keeps: &options.keeps };
+    let around = MoveSurroundings { robot, space: space.as_ref(), keeps: &options.keeps };
     let inside = limits.position_limits(robot)?;
     let admitted = |what: &str, q: &[f64]| -> Result<Vec<f64>> {
         let q = inside.admit_start(Some(robot), what, q, &StartSlack::NONE)?.q;
@@ -107,7 +107,7 @@ struct Climber<'a> {
     robot: &'a Robot,
     limits: &'a ConstantLimits,
     moves: &'a [Move],
-    blocks: &'a [Block<'a>],
+    blocks: &'a [LadderBlock<'a>],
     each: SolveOptions,
 }
 

@@ -21,7 +21,7 @@ const ACCURACY: f64 = 5e-6;
 
 /// A part of a run.
 #[derive(Debug, Clone)]
-pub(super) struct Part<'a> {
+pub(super) struct RunPart<'a> {
     /// Index of its move, of the first for a path of the tip.
     pub index: usize,
     /// The path of the tip; `None` for a joint move.
@@ -50,14 +50,14 @@ impl Window {
 /// A run: one joint path through all its parts.
 #[derive(Debug)]
 pub(super) struct Run<'a> {
-    pub parts: Vec<Part<'a>>,
+    pub parts: Vec<RunPart<'a>>,
     pub windows: Vec<Window>,
     pub path: JointPath,
 }
 
 impl<'a> Run<'a> {
     /// The run of one part.
-    pub fn of(part: Part<'a>) -> Self {
+    pub fn of(part: RunPart<'a>) -> Self {
         let path = part.path.clone();
         let [from, to] = [path.breaks()[0], path.breaks()[path.pieces()]];
         Self { parts: vec![part], windows: vec![Window { begin: from, from, to }], path }
@@ -67,7 +67,12 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// None in practice: the parts differ.
-    pub fn rounded(robot: &Robot, limits: &ConstantLimits, parts: &[Part<'a>], radii: &[f64]) -> Result<Option<Self>> {
+    pub fn rounded(
+        robot: &Robot,
+        limits: &ConstantLimits,
+        parts: &[RunPart<'a>],
+        radii: &[f64],
+    ) -> Result<Option<Self>> {
         let middle = |path: &JointPath| 0.5 * (path.breaks()[0] + path.breaks()[path.pieces()]);
         let mut corners = vec![];
         for (i, radius) in radii.iter().enumerate() {
@@ -91,7 +96,7 @@ impl<'a> Run<'a> {
     }
 
     /// The spline through the knots of all parts, and `intervals` of each corner.
-    fn through(parts: &[Part<'a>], corners: &[JointCorner], intervals: usize) -> Result<Self> {
+    fn through(parts: &[RunPart<'a>], corners: &[JointCorner], intervals: usize) -> Result<Self> {
         let names = parts[0].path.joints().to_vec();
         let (mut knots, mut rows, mut speeds, mut windows) = (vec![], vec![], vec![], vec![]);
         let mut q = Point::from_elem(0.0, names.len());
@@ -150,7 +155,7 @@ impl<'a> Run<'a> {
 }
 
 /// Parameters of a part at which a run takes it over, from `from` to `to`.
-fn knots_of(part: &Part<'_>, from: f64, to: f64) -> Vec<f64> {
+fn knots_of(part: &RunPart<'_>, from: f64, to: f64) -> Vec<f64> {
     let mut knots = vec![from];
     if part.tool_path.is_some() {
         let spare = 1e-3 * (to - from) / part.path.pieces() as f64;

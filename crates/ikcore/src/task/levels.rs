@@ -26,11 +26,6 @@ pub struct Levels {
 type Place = (u32, u8);
 
 impl Levels {
-    /// Whether these `tasks` of several tips have an order.
-    pub fn are_several(tasks: &[CheckedTask]) -> bool {
-        tasks.iter().any(|task| task.first.is_some() || task.level != tasks[0].level)
-    }
-
     /// Levels of the tasks of several tips. Tolerances that are wide enough are what a level aims at.
     pub fn of(aims: &Aims<'_>) -> Self {
         let mut placed: SmallVec<[(Place, CheckedTask, Target); 8]> = SmallVec::new();

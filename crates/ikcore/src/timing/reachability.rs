@@ -7,11 +7,11 @@
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
-use super::grid::Segment;
+use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
 use super::tip_segments::TipSegments;
-use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
+use super::velocity_curve::maximum_velocity_curve;
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};

@@ -3,10 +3,9 @@
 //! The tip's velocity is p' sqrt(x) and its acceleration p' u + p'' x, with the derivatives p' and p'' of its place by the path parameter: polynomials
 //! over a segment, to rounding, whose Bernstein coefficients bound them at every point.
 
-use super::grid::Segment;
+use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
-use super::velocity_curve::UNLIMITED;
-use crate::constraint::{Interval, TIGHT, TipJet, TipRates, VectorJet};
+use crate::constraint::{TIGHT, TipInterval, TipJet, TipRates, VectorJet};
 use crate::error::Result;
 use crate::interrupt::checkpoint_at;
 use crate::limits::TipField;
@@ -56,7 +55,7 @@ impl<'a> TipSegments<'a> {
     /// [`Error::Interrupted`](crate::Error::Interrupted).
     pub(super) fn new(path: &JointPath, segments: &[Segment], rates: &'a TipRates) -> Result<Self> {
         let mut all = Self { rates, jets: Vec::with_capacity(segments.len()), begins: vec![0] };
-        let mut at = Interval::new(rates.robot());
+        let mut at = TipInterval::new(rates.robot());
         for (i, segment) in segments.iter().enumerate() {
             checkpoint_at(i)?;
             let half = 0.5 * segment.length;
@@ -66,7 +65,7 @@ impl<'a> TipSegments<'a> {
         Ok(all)
     }
 
-    fn push(&mut self, at: &mut Interval, of: (&JointPath, &Segment), [middle, half]: [f64; 2], depth: usize) {
+    fn push(&mut self, at: &mut TipInterval, of: (&JointPath, &Segment), [middle, half]: [f64; 2], depth: usize) {
         let (path, segment) = of;
         let powers = path.powers(segment.piece);
         let polynomials = (0..path.joints().len()).map(|j| polynomial(powers.map(|power| power[j])));

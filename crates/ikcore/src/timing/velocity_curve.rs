@@ -2,13 +2,10 @@
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
-use super::grid::Segment;
+use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
 use super::tip_segments::TipSegments;
 use crate::math::polynomial::quadratic_roots;
-
-/// Represents no bound; finite, to leave room for arithmetic.
-pub(super) const UNLIMITED: f64 = 1e100;
 
 /// Largest factor by which the bound may grow between neighbouring grid points. If all joints reverse at once, dq/ds is
 /// zero and the bound infinite, and a line from a finite to an infinite bound bounds nothing.

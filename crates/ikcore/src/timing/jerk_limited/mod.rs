@@ -34,8 +34,10 @@ use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
 /// Rounds of refinement of the knots at most; one that saves less than this fraction of the duration is the last.
-const REFINEMENTS: usize = 4;
+const REFINEMENTS: usize = 6;
 const WORTHWHILE: f64 = 1e-3;
+/// Excess over a limit between the places where it is imposed that calls for another round.
+const FAITHFUL: f64 = 2e-3;
 /// Change of the jerk in an interval or at a knot, as a part of its limit, at which intervals are halved.
 const CHANGE: f64 = 0.3;
 /// Number of the shortest intervals that a motion may consist of.
@@ -58,7 +60,7 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
     let mut rate = RateSpline::new(knots);
     let mut constraints = Constraints::new(&clock, &rate, &vec![step; rate.intervals()], limits);
     fastest_rate(&mut rate, &mut constraints)?;
-    let mut best = played(path, &clock, &rate, limits)?;
+    let (mut best, _) = played(path, &clock, &rate, limits)?;
     for _ in 0..REFINEMENTS {
         let parts = parts(&rate, &constraints, best.duration() / SHORTEST);
         if parts.iter().all(|parts| *parts == 1) {
@@ -67,12 +69,12 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
         rate = rate.refined(&parts);
         constraints = Constraints::new(&clock, &rate, &rate.durations(), limits);
         faster_rate(&mut rate, &mut constraints)?;
-        let motion = played(path, &clock, &rate, limits)?;
+        let (motion, slowdown) = played(path, &clock, &rate, limits)?;
         let saved = 1.0 - motion.duration() / best.duration();
         if saved > 0.0 {
             best = motion;
         }
-        if saved < WORTHWHILE {
+        if saved < WORTHWHILE && slowdown < 1.0 + FAITHFUL {
             break;
         }
     }
@@ -99,8 +101,9 @@ fn parts(rate: &RateSpline, constraints: &Constraints, shortest: f64) -> Vec<usi
     parts
 }
 
-/// Quintics with the positions, velocities and accelerations of a path at the knots of the rate of its clock, as fast as the limits allow.
-fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantLimits) -> Result<Trajectory> {
+/// Quintics with the positions, velocities and accelerations of a path at the knots of the rate of its clock, slowed down as the limits need,
+/// and by how much.
+fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantLimits) -> Result<(Trajectory, f64)> {
     let n = path.joints().len();
     let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity((rate.intervals() + 1) * n));
     let mut times = vec![0.0];
@@ -124,5 +127,5 @@ fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantL
     // A path with speeds of its own is not passed faster than these.
     let least = if path.has_speeds() { 1.0 } else { 0.0 };
     let slowdown = limits.slowdown(&motion).max(least);
-    motion.slowed(slowdown * (1.0 + ROUNDING))
+    Ok((motion.slowed(slowdown * (1.0 + ROUNDING))?, slowdown))
 }
