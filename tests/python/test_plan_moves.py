@@ -197,6 +197,10 @@ WRONG: list[tuple[list[Any], str]] = [
         "as the end, and the angle",
     ),
     (
+        [Line(shifted(y=0.1), blend=0.2), Line(shifted())],
+        "move 0: its blend of 0.2 m does not fit into move 0, which is 0.1000 m long: make the blend smaller",
+    ),
+    (
         [Line(shifted(y=0.1), blend=0.01), Line(shifted(y=0.1))],
         "move 0: its blend has no room, because move 1 ends where it begins: leave that out, or give no blend",
     ),
@@ -222,7 +226,7 @@ def test_wrong_moves_are_named(program: list[Any], message: str) -> None:
 def test_a_line_out_of_reach_says_where() -> None:
     with pytest.raises(Invalid, match=r"^move 0 'out' cannot be reached: 0.* m along it, no solution") as caught:
         bik.plan_moves(UR5, [Line(shifted(x=-0.9), name="out")], start_q=HOME, limits=LIMITS)
-    assert "out of reach" in str(caught.value)
+    assert "(no configuration has this pose)" in str(caught.value)
 
 
 def test_a_joint_that_meets_its_limit_is_named() -> None:

@@ -3,7 +3,7 @@
 use super::corner::Corner;
 use super::leg::Leg;
 use super::program::{JointGoal, Move, MoveKind};
-use super::tool_path::ToolPath;
+use super::tool_path::{ROUNDING, ToolPath};
 use crate::error::{Error, Result};
 use crate::math::Pose;
 use crate::robot::Robot;
@@ -74,14 +74,12 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Ve
     Ok(stages)
 }
 
-/// Checks that a blend between a move of the tip and a joint move is no longer than the former.
+/// Checks that the blend at either end of a line or an arc is no longer than the move.
 fn require_length(moves: &[Move], i: usize, leg: &Leg) -> Result<()> {
-    let beside_joints = |k: usize| moves.get(k).is_some_and(|each| matches!(each.kind, MoveKind::Joints(_)));
-    let before = i.checked_sub(1).filter(|before| beside_joints(*before));
-    let after = Some(i).filter(|i| beside_joints(i + 1));
-    for with_blend in [before, after].into_iter().flatten() {
+    let (before, after) = (i.checked_sub(1), Some(i).filter(|i| i + 1 < moves.len()));
+    for with_blend in [before, after].into_iter().flatten().filter(|_| !leg.turns_on_the_spot()) {
         let radius = moves[with_blend].blend;
-        if radius > 0.0 && leg.length_within(radius) > leg.length {
+        if radius > 0.0 && leg.length_within(radius) > leg.length * (1.0 + ROUNDING) {
             let problem = format!(
                 "its blend of {radius} m does not fit into {}, which is {} m long: make the blend smaller",
                 moves[i].named(i),

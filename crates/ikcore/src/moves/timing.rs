@@ -9,11 +9,8 @@ use crate::trajectory::Trajectory;
 const FASTER: f64 = 1e-6;
 const SLOWER: f64 = 3e-4;
 
-/// Rounds in which speeds are asked for anew.
-const ROUNDS: usize = 5;
-
-/// Range of the factor on the speeds asked for.
-const FACTORS: [f64; 2] = [0.2, 5.0];
+/// Part of the speed asked for from which on a shortfall may come from the timing; below, limits keep the speed down.
+const NEARLY: f64 = 0.99;
 
 /// Grid points of a timing, and the least number for each piece of the path. Refining the grid would gain a thousandth of the duration.
 const GRIDPOINTS: usize = 240;
@@ -37,7 +34,7 @@ pub(super) struct PathTime {
 
 /// The fastest motion along `path` that keeps the largest path speeds of its pieces.
 ///
-/// Smoothing for jerk limits scales the whole motion in time, and with it the speeds; so they are asked for anew until they come out.
+/// With jerk limits the whole motion is at last slowed by a little, and with it the speeds; so these are then asked for once more.
 ///
 /// # Errors
 /// Those of `time_optimal`.
@@ -49,23 +46,20 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
     if !limits.limit_jerk() || asked.iter().all(|speed| speed.is_infinite()) {
         return Ok(motion);
     }
-    let (mut factor, mut motion) = (1.0, motion);
-    let mut best: Option<Trajectory> = None;
-    for round in 0..ROUNDS {
-        let reached = largest_ratio(path, &asked, &motion)?;
-        let kept = if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion };
-        if best.as_ref().is_none_or(|best| kept.duration() < best.duration()) {
-            best = Some(kept);
-        }
-        let next: f64 = (factor / reached).clamp(FACTORS[0], FACTORS[1]);
-        if (1.0 - SLOWER..=1.0 + FASTER).contains(&reached) || next == factor || round + 1 == ROUNDS {
-            break;
-        }
-        factor = next;
-        let speeds = asked.iter().map(|speed| factor * speed).collect();
-        motion = time(&path.clone().with_speeds(speeds), limits, &options)?;
+    let (motion, reached) = at_most_asked(path, &asked, motion)?;
+    if !(NEARLY..1.0 - SLOWER).contains(&reached) {
+        return Ok(motion);
     }
-    best.map_or_else(|| time(path, limits, &options), Ok)
+    let speeds = asked.iter().map(|speed| speed / reached).collect();
+    let again = time(&path.clone().with_speeds(speeds), limits, &options)?;
+    let (again, _) = at_most_asked(path, &asked, again)?;
+    Ok(if again.duration() < motion.duration() { again } else { motion })
+}
+
+/// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
+fn at_most_asked(path: &JointPath, asked: &[f64], motion: Trajectory) -> Result<(Trajectory, f64)> {
+    let reached = largest_ratio(path, asked, &motion)?;
+    Ok((if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion }, reached))
 }
 
 /// Largest path speed relative to the one asked for.

@@ -8,7 +8,7 @@ use crate::math::{Frame, Pose};
 use crate::wording::number;
 
 /// Excess of blends over the length of a move that counts as rounding, relative to the length.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Pieces shorter than this fraction of their move are left out: blends meet there.
 const NEGLIGIBLE: f64 = 1e-6;

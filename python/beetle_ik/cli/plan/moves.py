@@ -21,6 +21,7 @@ from ..options import (
     SceneFile,
     Seed,
     TipLink,
+    TipSpeed,
     Trusted,
     UrdfFile,
     Velocity,
@@ -54,6 +55,7 @@ def moves(
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
+    tip_speed: TipSpeed = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
     out: Out = None,
@@ -71,7 +73,7 @@ def moves(
     """
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     read = read_program(program)
-    chosen = options(velocity, acceleration, jerk, max_evaluations)
+    chosen = options(velocity, acceleration, jerk, tip_speed, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_moves(

@@ -107,7 +107,7 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
 
 
 def _move(move: MoveReport) -> dict[str, Any]:
-    bound_by = [{key: getattr(bound, key) for key in ("joint", "limit", "start", "end")} for bound in move.bound_by]
+    bound_by = [{key: getattr(bound, key) for key in ("limit", "of", "start", "end")} for bound in move.bound_by]
     return {"name": move.name, "start": move.start, "end": move.end, "speed": move.speed, "bound_by": bound_by}
 
 
