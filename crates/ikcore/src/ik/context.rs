@@ -18,7 +18,7 @@ use crate::obstacle::ClearSpace;
 use crate::problem::Problem;
 use crate::robot::Robot;
 use crate::solver::{AnySolver, Status, Stopwatch};
-use crate::task::{Aims, CheckedTask, First, Goal, Goals, Levels, SquaredError, Target, TargetRow};
+use crate::task::{Aims, CheckedTask, First, Goal, Goals, SquaredError, Target, TargetRow};
 
 /// Validated target and start.
 #[derive(Debug, Clone, Copy)]
@@ -179,7 +179,7 @@ impl<'a> SolveContext<'a> {
 
     /// Whether the tasks of several tips have levels, of which the lower ones come first where not all targets can be met.
     pub(super) fn has_levels(&self) -> bool {
-        self.robot.tip_count() > 1 && !self.options.whole_only && Levels::are_several(&self.tasks)
+        !self.options.whole_only && Aims { tasks: &self.tasks, targets: &[] }.has_levels(self.robot)
     }
 
     /// Checks that the tasks have one level: solutions that meet all targets leave nothing to put first.
