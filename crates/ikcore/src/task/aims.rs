@@ -98,7 +98,8 @@ impl<'a> Aims<'a> {
 
     /// Whether targets of several tips of `robot` have an order.
     pub(crate) fn has_levels(&self, robot: &Robot) -> bool {
-        robot.tip_count() > 1 && CheckedTask::have_levels(self.tasks)
+        let differs = |task: &CheckedTask| task.first.is_some() || task.level != self.tasks[0].level;
+        robot.tip_count() > 1 && self.tasks.iter().any(differs)
     }
 
     /// Whether any task is for a pair of tips that is held.

@@ -22,13 +22,13 @@ pub struct Levels {
     ends: SmallVec<[usize; 4]>,
 }
 
-/// Place of a task in the order: its level, and the place of its part of a pose.
-type Place = (u32, u8);
+/// Key of a task in the order: its level, and the place of its part of a pose.
+type OrderKey = (u32, u8);
 
 impl Levels {
     /// Levels of the tasks of several tips. Tolerances that are wide enough are what a level aims at.
     pub fn of(aims: &Aims<'_>) -> Self {
-        let mut placed: SmallVec<[(Place, CheckedTask, Target); 8]> = SmallVec::new();
+        let mut placed: SmallVec<[(OrderKey, CheckedTask, Target); 8]> = SmallVec::new();
         for (task, target) in aims.iter() {
             let mut task = task.clone();
             if task.criterion.has_band() {

@@ -229,15 +229,15 @@ impl<'a> LevelDescent<'a> {
         let multipliers: SmallVec<[Multipliers; 4]> = (0..=k).map(|i| self.multipliers(&rows[..=i], q)).collect();
         let mut ahead = Point::from_slice(q);
         let mut bent: Vec<DMatrix<f64>> = models.iter().map(|model| model.hessian.clone()).collect();
-        for j in 0..q.len() {
-            ahead[j] = q[j] + APART;
+        for (j, at) in q.iter().enumerate() {
+            ahead[j] = at + APART;
             let there: SmallVec<[Rows; 4]> = (0..=k).map(|i| self.rows(i, &ahead)).collect();
             self.evaluations += 1;
             for i in bending.iter().copied() {
                 let slope = |rows: &[Rows]| lagrangian_slope(&rows[..=i], &multipliers[i]);
                 bent[i].set_column(j, &((slope(&there) - slope(&rows)) / APART));
             }
-            ahead[j] = q[j];
+            ahead[j] = *at;
         }
         for i in bending {
             models[i].hessian = 0.5 * (&bent[i] + bent[i].transpose());
