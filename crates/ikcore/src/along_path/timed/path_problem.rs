@@ -122,20 +122,28 @@ impl<'a> PathProblem<'a> {
             corners,
             accuracy,
         };
-        let rounded = self.rounded.iter().filter(|rounded| may_round && rounded.off < accuracy);
-        let rounded =
-            rounded.map(|rounded| on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off));
-        let as_given = Corners::on(self.tip_path).iter().map(|corners| on(self.tip_path, *corners, accuracy));
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
-        for interpolation in as_given.chain(rounded) {
-            let is_given = std::ptr::eq(interpolation.tip_path, self.tip_path);
-            let start = if is_given { Some(nominal.clone()) } else { interpolation.moved(nominal.clone()) };
-            let Some(start) = start else { continue };
+        let mut timed = |interpolation: Interpolation<'a>, start: JointWaypoints| -> Result<f64> {
             let waypoints = interpolation.refined(start)?;
             let duration = self.duration(&interpolation, &waypoints)?;
             if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
                 quickest = Some((duration, interpolation, waypoints));
             }
+            Ok(duration)
+        };
+        for corners in Corners::on(self.tip_path) {
+            timed(on(self.tip_path, *corners, accuracy), nominal.clone())?;
+        }
+        let mut of_wider = f64::INFINITY;
+        for rounded in self.rounded.iter().filter(|rounded| may_round && rounded.off < accuracy) {
+            let interpolation = on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off);
+            let Some(start) = interpolation.moved(nominal.clone()) else { continue };
+            let duration = timed(interpolation, start)?;
+            // The narrower, the slower, once one is slower than a wider one.
+            if duration > of_wider {
+                break;
+            }
+            of_wider = duration;
         }
         let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone());
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
