@@ -634,10 +634,24 @@ class Limits:
         lower, upper: position limits (rad, m).
         velocity: velocity limits (rad/s, m/s).
         acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
+        tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
+            origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
+            limit. Planned motions keep them at every instant, not only at samples.
 
-    Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+    Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
     are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
     no limit is ignored.
+
+    For example, a cobot whose tool moves at 0.25 m/s at most:
+
+        >>> limits = bik.Limits(velocity=2.0, acceleration=8.0, tip_speed=0.25)
+        >>> plan = bik.plan_point_to_point(bik.Robot.named("ur5e"), start_q=[0, -1.5, 1.5, 0, 0, 0], end_q=[1, -1, 1, 0, 0, 0], limits=limits)
+        >>> plan.success
+        True
+
+    Raises:
+        LimitError: a negative limit; a limit of a tip that is not positive.
+        InvalidInputError: NaN, no number, or a dict that is not by tip.
     """
 
     def __new__(
@@ -648,6 +662,9 @@ class Limits:
         velocity: _LimitIn | None = None,
         acceleration: _LimitIn | None = None,
         jerk: _LimitIn | None = None,
+        tip_speed: float | Mapping[str, float] | None = None,
+        tip_acceleration: float | Mapping[str, float] | None = None,
+        tip_turn_speed: float | Mapping[str, float] | None = None,
     ) -> Limits: ...
     @property
     def lower(self) -> _LimitOut:
@@ -664,6 +681,15 @@ class Limits:
     @property
     def jerk(self) -> _LimitOut:
         """Jerk limits (rad/s^3, m/s^3), as given."""
+    @property
+    def tip_speed(self) -> float | dict[str, float] | None:
+        """Limits of the speed of tips (m/s), as given."""
+    @property
+    def tip_acceleration(self) -> float | dict[str, float] | None:
+        """Limits of the acceleration of tips (m/s^2), as given."""
+    @property
+    def tip_turn_speed(self) -> float | dict[str, float] | None:
+        """Limits of how fast tips turn (rad/s), as given."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 # --- solvers ------------------------------------------------------------------------------------
@@ -3596,6 +3622,7 @@ def time_optimal(
     end_speed: float = 0.0,
     joint_names: list[str] | None = None,
     tolerance: float | ArrayLike | None = None,
+    robot: Robot | None = None,
 ) -> Trajectory:
     """Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 
@@ -3619,6 +3646,8 @@ def time_optimal(
         tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
             parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
             is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+        robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
+            `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
     Equal consecutive rows, as a recording has at rest, are one waypoint.
 
@@ -3629,7 +3658,8 @@ def time_optimal(
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
         InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-        UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
+        UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline without `tolerance`, limits of tips
+            without `robot`, or limits of a tip on a floating base.
 
     For example:
 
@@ -3945,6 +3975,9 @@ class Plan:
     @property
     def obstacles(self) -> tuple[Obstacle, ...]:
         """The obstacles, as given."""
+    @property
+    def moves(self) -> list[MoveReport]:
+        """How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans."""
     def retime(self, limits: Limits) -> Plan:
         """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
         the plan keeps on the way, which is certified again.
@@ -3957,7 +3990,7 @@ class Plan:
 
         Raises:
             TypeError: limits that are no `Limits`.
-            InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
+            InfeasibleError: a plan with violations, one of `plan_moves`, a path outside the position limits, jerk limits on a motion whose
                 acceleration jumps, or a margin, or what is to be kept on the way, that the motion timed for jerk limits does not keep.
             UnsupportedLimit: limits that vary in time.
         """
@@ -3966,6 +3999,207 @@ class Plan:
         """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
         figure.
         """
+
+@disjoint_base
+class Move:
+    """A move of a program: `Joints`, `Line`, `Arc` or `Wait`."""
+
+    @property
+    def blend(self) -> float:
+        """Radius about the end of the move (m) inside which the motion may round the corner to the next move; 0: it stops there."""
+    @property
+    def name(self) -> str | None:
+        """Name in messages and reports, or None."""
+
+@final
+class Joints(Move):
+    """All joints together to a configuration or a pose, as fast as the limits allow (PTP, movej).
+
+    Args:
+        q_or_pose: joint positions (n,) (rad, m), or a pose (4, 4) of the tip, whose configuration the planner chooses.
+        blend: radius (m) about the end inside which the motion may round the corner to the next move; 0: it stops there.
+        name: name in messages and reports.
+    """
+
+    def __new__(cls, q_or_pose: ArrayLike, *, blend: float = 0.0, name: str | None = None) -> Joints: ...
+    @property
+    def q_or_pose(self) -> _Array:
+        """Joint positions at the end (n,), or the pose of the tip (4, 4)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Line(Move):
+    """The tip along a straight line to a pose; its orientation turns uniformly with the length (LIN, movel).
+
+    Args:
+        pose: (4, 4), pose of the tip at the end.
+        speed: speed of the tip (m/s), kept between the blends wherever the limits allow; a turn on the spot counts 0.1 m for
+            each radian. None: as fast as the limits allow.
+        blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
+        name: name in messages and reports.
+    """
+
+    def __new__(
+        cls, pose: ArrayLike, *, speed: float | None = None, blend: float = 0.0, name: str | None = None
+    ) -> Line: ...
+    @property
+    def pose(self) -> _Array:
+        """Pose of the tip at the end (4, 4)."""
+    @property
+    def speed(self) -> float | None:
+        """Speed of the tip (m/s); None: as fast as the limits allow."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Arc(Move):
+    """The tip along an arc of a circle; its orientation turns uniformly with the length (CIRC, movec).
+
+    Args:
+        via: point (3,) (m) that the arc passes through; of a pose (4, 4) the position counts.
+        pose: (4, 4), pose of the tip at the end.
+        speed: speed of the tip (m/s), kept between the blends wherever the limits allow. None: as fast as the limits allow.
+        blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
+        angle: angle (rad) after which the arc ends, on the circle through its start, `via` and the position of `pose`, with
+            the orientation of `pose`; 2 pi is a full circle. None: it ends at `pose`.
+        name: name in messages and reports.
+    """
+
+    def __new__(
+        cls,
+        via: ArrayLike,
+        pose: ArrayLike,
+        *,
+        speed: float | None = None,
+        blend: float = 0.0,
+        angle: float | None = None,
+        name: str | None = None,
+    ) -> Arc: ...
+    @property
+    def via(self) -> _Array:
+        """Point that the arc passes through (3,) (m)."""
+    @property
+    def pose(self) -> _Array:
+        """Pose of the tip at the end (4, 4)."""
+    @property
+    def speed(self) -> float | None:
+        """Speed of the tip (m/s); None: as fast as the limits allow."""
+    @property
+    def angle(self) -> float | None:
+        """Angle after which the arc ends (rad); None: it ends at `pose`."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Wait(Move):
+    """Rest for some time.
+
+    Args:
+        seconds: how long (s), from 0 to 1e6.
+        name: name in messages and reports.
+    """
+
+    def __new__(cls, seconds: float, *, name: str | None = None) -> Wait: ...
+    @property
+    def seconds(self) -> float:
+        """How long (s)."""
+    def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class MoveReport:
+    """How a move of a program came out."""
+
+    @property
+    def name(self) -> str | None:
+        """Name of the move, or None."""
+    @property
+    def start(self) -> float:
+        """When it starts (s). A blend belongs to its two moves by halves of its length."""
+    @property
+    def end(self) -> float:
+        """When it ends (s)."""
+    @property
+    def speed(self) -> float:
+        """Largest speed of the tip on it (m/s), between its blends; of a turn on the spot 0.1 m for each radian."""
+    @property
+    def bound_by(self) -> tuple[SpeedBound, ...]:
+        """What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in
+        order of time; empty where it had that speed throughout, and where none is asked for.
+        """
+
+@final
+class SpeedBound:
+    """A limit that keeps the tip below the speed asked for."""
+
+    @property
+    def joint(self) -> str:
+        """Name of the joint that is nearest to a limit there."""
+    @property
+    def limit(self) -> Literal["velocity", "acceleration", "jerk"]:
+        """The limit: "velocity", "acceleration" or "jerk"."""
+    @property
+    def start(self) -> float:
+        """From when (s)."""
+    @property
+    def end(self) -> float:
+        """Until when (s)."""
+
+def plan_moves(
+    robot: Robot,
+    moves: Iterable[Move],
+    *,
+    start_q: ArrayLike,
+    limits: Limits | None = None,
+    obstacles: Iterable[Obstacle] | None = None,
+    margin: float | None = None,
+    self_collision: bool | None = None,
+    keep: _Keeps = None,
+    stop: Stop | None = None,
+    seed: int = 0,
+    progress: _Progress = None,
+) -> Plan:
+    """Plans the motion of a program of moves, from rest at `start_q` to rest.
+
+    Configurations are chosen for the program as a whole, so that no joint meets its limit in the middle of a move: branches and whole
+    turns, and the posture of a redundant arm. Lines and arcs are kept within 10 micrometres, a blend stays within its radius, and the
+    speed asked for is kept between blends to 0.1 % wherever the limits allow; `Plan.moves` says where they do not.
+
+    With obstacles, joint moves find a way around them, and configurations are chosen whose paths are clear; the whole motion is
+    certified between samples too.
+
+    Args:
+        robot: the arm.
+        moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
+        start_q: joint positions (n,) at the start.
+        limits: position, velocity, acceleration and jerk limits; None: the robot's.
+        obstacles: a `Scene` or a list of obstacles to keep clear of.
+        margin: least distance from obstacles and between links (m); None: 1 mm.
+        self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+        keep: what holds at every instant of the motion, a `Keep` or a list of them.
+        stop: budgets of the search for each joint move among obstacles; None: as for `plan_point_to_point`.
+        seed: seed of the random draws; the same seed gives the same bits.
+        progress: True shows a progress bar; a callable is called with (done, total).
+
+    Returns:
+        A `Plan`, whose `moves` has a `MoveReport` for each move.
+
+    Raises:
+        InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
+            arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
+            collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
+            bodies.
+        LimitError: limits that contradict each other; a start or joint positions outside them.
+        UnsupportedLimit: limits that vary in time, or no acceleration limits.
+
+    For example:
+
+        >>> arm = bik.Robot.named("ur5e")
+        >>> q = [0.0, -1.5, 1.8, -1.9, -1.57, 0.0]
+        >>> down = arm.fk(q)
+        >>> down[2, 3] -= 0.1
+        >>> program = [bik.moves.Line(down, speed=0.05, name="down"), bik.moves.Wait(0.5)]
+        >>> plan = bik.plan_moves(arm, program, start_q=q, limits=bik.Limits(acceleration=5.0))
+        >>> plan.moves[0]
+        <MoveReport 'down': 0.000 to 2.006 s, up to 0.0500 m/s, bound by ...>
+    """
 
 @final
 class Violation:

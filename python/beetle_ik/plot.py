@@ -129,10 +129,10 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 
 def plan(plan: Plan) -> Figure:
-    """Draws a planned motion: the arm along its path, the search history, and the joints over time."""
+    """Draws a planned motion: the arm along its path, the search history, joints and speeds of the tip over time."""
     require("plan", plan, _core.Plan)
     with style():
-        figure = new_figure(13.0, 3 * ROW_HEIGHT + 0.4)
+        figure = new_figure(13.0, plan_figure.ROWS * ROW_HEIGHT * 0.9 + 0.4)
         plan_figure.draw(figure, plan)
     return figure
 

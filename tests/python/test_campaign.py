@@ -153,9 +153,18 @@ SPOILED = {
         "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
         "what is kept does not hold",
     ),
+    "tip_limits": (
+        "powers = motion.coefficients\nscale = 1e4 ** np.arange(powers.shape[2])\n"
+        "motion = bik.Trajectory(motion.time / 1e4, powers * scale)",
+        "a tip is beyond its limit",
+    ),
     "kept_motions": (
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",
+    ),
+    "programs": (
+        "motion = bik.Trajectory(motion.time, motion.coefficients + 10.0 * np.eye(1, motion.coefficients.shape[2]))",
+        "a joint is outside its limits",
     ),
     "looser_paths": (
         "plans += [(False, inf, '')]",
@@ -194,6 +203,18 @@ SPOILED = {
     "own_points": (
         "kept = kept[1:]\nremoved += 1",
         "a point is kept, or taken out, against the padding",
+    ),
+    "surface_line": (
+        "poses = poses.copy()\nposes[:, :3, 3] += 0.01",
+        "the tool points beside the surface",
+    ),
+    "gcode_moves": (
+        "program = bik.paths.from_gcode(text.replace('G0 X0', 'G0 X1'))",
+        "a move ends at another point",
+    ),
+    "gcode": (
+        "poses = poses * nan",
+        "a program was read whose poses are not finite",
     ),
     "urdf": (
         "pose = pose * nan",

@@ -69,6 +69,7 @@ ARM = IIWA.with_capsules(radius=0.05)
 PLANAR = bik.Robot.planar([1, 1, 1])
 ONE_JOINT = bik.Robot.from_urdf(URDF)
 LINE = bik.paths.polyline([(0.3, 0.3, 1.0), (0.3, 0.31, 1.0)], duration=0.2)
+TABLE = bik.obstacles.Box((0, 0, 0), (0.4, 0.4, 0.2))
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 QUICK = {"stop": bik.Stop(max_evaluations=100)}
@@ -188,6 +189,14 @@ NEEDED: dict[str, dict[str, Any]] = {
     "obstacles.nearest": {"robot": ARM, "q": START},
     "paths.circle": {**PLACED, "diameter": 0.1},
     "paths.from_function": {"function": lambda t: (t, 0, 0), "duration": 1.0},
+    "paths.from_gcode": {"file": "G0 X0 Y0 Z0\nG0 X1"},
+    "paths.GcodeProgram.": {".": bik.paths.from_gcode("G0 X0 Y0 Z0\nG0 X1")},
+    "paths.GcodeProgram.path": {"rapid_speed": 0.1},
+    "paths.Seam.": {".": bik.paths.raster(TABLE, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0]},
+    "paths.Seam.path": {"speed": 0.1},
+    "paths.join": {"seams": bik.paths.raster(TABLE, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))},
+    "paths.on_surface": {"surface": TABLE, "points": [(0, 0, 0.1), (0.1, 0, 0.1)]},
+    "paths.raster": {"surface": TABLE, "spacing": 0.1, "direction": (1, 0, 0), "side": (0, 0, 1)},
     "paths.from_samples": {"time": [0, 1], "positions_or_poses": [(0, 0, 0), (1, 0, 0)]},
     "paths.hypotrochoid": {**PLACED, "outer_radius": 0.3, "inner_radius": 0.1, "distance": 0.1},
     "paths.letter_m": {**PLACED, "width": 0.1, "height": 0.1},
@@ -195,6 +204,11 @@ NEEDED: dict[str, dict[str, Any]] = {
     "paths.polyline": {"points": [(0, 0, 0), (1, 0, 0)], "duration": 1.0},
     "paths.rose": {**PLACED, "radius": 0.1, "k": 3},
     "plan_along_path": {"robot": ARM, "path": LINE, "limits": LIMITS, **QUICK},
+    "moves.Arc": {"via": (0, 0, 0), "pose": np.eye(4)},
+    "moves.Joints": {"q_or_pose": START},
+    "moves.Line": {"pose": np.eye(4)},
+    "moves.Wait": {"seconds": 1.0},
+    "plan_moves": {"robot": ARM, "moves": [bik.moves.Wait(1.0)], "start_q": START, "limits": LIMITS},
     "plan_batch": {"robot": PLANAR, "problems": [{"start": (1, 1, 0), "end": (1, 1.5, 0)}], "limits": LIMITS, **QUICK},
     "plan_point_to_point": {"robot": PLANAR, "start": (1, 1, 0), "end": (1, 1.5, 0), "limits": LIMITS, **QUICK},
     "papers.planar_posture": {"robot": PLANAR, "target": (1, 1, 0), "swarm": bik.papers.CircleSwarm()},
@@ -221,6 +235,7 @@ NEEDED: dict[str, dict[str, Any]] = {
 # A right call would change what the others are called on, or leave a film that nobody looks at.
 ONLY_WRONG = ("ControlSession.command", "ControlSession.observe", "plot.animation")
 MODULES = {"": bik, "tasks.": bik.tasks, "goals.": bik.goals, "paths.": bik.paths, "obstacles.": bik.obstacles}
+MODULES["moves."] = bik.moves
 MODULES |= {"papers.": bik.papers, "plot.": bik.plot, "filters.": bik.filters, "distributed.": distributed}
 
 
@@ -235,7 +250,7 @@ def public(prefix: str, module: ModuleType) -> Iterator[tuple[str, Callable[...,
             continue
         if issubclass(thing, bik.BeetleIkError | bik.UnitsWarning | bik.Status):
             continue
-        if name not in ("Goal", "Obstacle", "Task"):
+        if name not in ("Goal", "Move", "Obstacle", "Task"):
             yield prefix + name, thing
         for method in vars(thing):
             if not method.startswith("_") and callable(getattr(thing, method)):
@@ -260,6 +275,7 @@ MADE_BY_THE_LIBRARY = [
     "InverseReachabilityMap",
     "Minimum",
     "ModelFreeResult",
+    "MoveReport",
     "Path",
     "Plan",
     "ReachabilityMap",
@@ -267,6 +283,7 @@ MADE_BY_THE_LIBRARY = [
     "SelfMotion",
     "Solution",
     "SolutionSet",
+    "SpeedBound",
     "Step",
     "TrackResult",
     "VelocityEllipsoid",
@@ -274,6 +291,9 @@ MADE_BY_THE_LIBRARY = [
     "Violation",
     "distributed.BatchArrays",
     "papers.PlanarPosture",
+    "paths.GcodeMove",
+    "paths.GcodeProgram",
+    "paths.Seam",
     "obstacles.Nearest",
 ]
 

@@ -109,6 +109,16 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "plan_point_to_point": lambda: (
             lambda: bik.plan_point_to_point(CAPSULES, **ENCLOSED, obstacles=walled_in(), stop=ENDLESS)
         ),
+        "plan_moves": lambda: (
+            lambda: bik.plan_moves(
+                CAPSULES,
+                [bik.moves.Joints(ENCLOSED["end_q"])],
+                start_q=ENCLOSED["start_q"],
+                limits=FAST,
+                obstacles=walled_in(),
+                stop=ENDLESS,
+            )
+        ),
         "papers.planar_posture": lambda: (
             lambda: bik.papers.planar_posture(
                 PLANAR, [0.5, 0.5, 0.0], swarm=bik.papers.CircleSwarm(population=1000, generations=10**6)
@@ -259,7 +269,8 @@ SHORT: dict[str, str] = {
             "paths.hypotrochoid", "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box",
             "obstacles.Capsule", "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid",
             "obstacles.HalfSpace", "obstacles.Moving", "obstacles.Sphere",
-            "filters.LowPass", "filters.OneEuro", "StraightLine", "Keep", "upright",
+            "filters.LowPass", "filters.OneEuro", "StraightLine", "Keep", "upright", "moves.Arc",
+            "moves.Joints", "moves.Line", "moves.Wait",
         ],
         CONSTANT,
     ),
@@ -277,7 +288,9 @@ SHORT: dict[str, str] = {
     ),
     **dict.fromkeys(
         ["InverseReachabilityMap.query", "InverseReachabilityMap.on_floor", "InverseReachabilityMap.plot",
-         "ReachabilityMap.inverse", "ReachabilityMap.plot", "ReachabilityMap.poses", "ReachabilityMap.reached"],
+         "ReachabilityMap.inverse", "ReachabilityMap.plot", "ReachabilityMap.poses", "ReachabilityMap.reached",
+         "paths.GcodeProgram.path", "paths.GcodeProgram.seams", "paths.Seam.path", "paths.from_gcode", "paths.join",
+         "paths.on_surface", "paths.raster"],
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,

@@ -15,8 +15,8 @@ CLOCKS = {"datetime", "time", "timeit"}
 
 # From the lowest up; `__init__` stands for the public names of the package.
 LAYERS = (
-    *("_core", "filters", "goals", "obstacles", "papers", "paths", "tasks"),
-    *("calls", "installed", "files", "figures", "robot_files", "scenes", "chunked", "mapping"),
+    *("_core", "filters", "goals", "moves", "obstacles", "papers", "tasks"),
+    *("calls", "installed", "files", "paths", "figures", "robot_files", "scenes", "chunked", "mapping"),
     *("distributed", "interop", "plot", "sim", "viewing", "vision"),
     *("__init__", "report", "experiments", "cli", "__main__"),
 )

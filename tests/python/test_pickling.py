@@ -319,6 +319,12 @@ def step_without_a_model() -> bik.Step:
     return next(step for step in steps if step is not None)
 
 
+def lowered(arm: bik.Robot, q: np.ndarray) -> np.ndarray:
+    pose = arm.fk(q)
+    pose[2, 3] -= 0.02
+    return pose
+
+
 def results() -> dict[str, object]:
     arm, planar = bik.Robot.named("iiwa14"), bik.Robot.planar([1.0] * 3, velocity=1.0)
     q = arm.random_configurations(4, seed=3)
@@ -340,6 +346,10 @@ def results() -> dict[str, object]:
             obstacles=[obstacle], keep=bik.Keep((0.0, 0.0, 0.0), bik.tasks.Position(tolerance=[9.0, 9.0, 1e-9])),
         ),
         "plan along": bik.plan_along_path(planar, [(1.5, 1.0, 0.0), (1.4, 1.2, 0.0)], limits=plane),
+        "program": bik.plan_moves(
+            arm, [bik.moves.Wait(0.5, name="here"), bik.moves.Line(lowered(arm, q[0]), speed=9.0, name="down")],
+            start_q=q[0], limits=bik.Limits(acceleration=5.0),
+        ),
         "model free": bik.track_model_free(bik.KinematicPlant(planar), circle, [0.1, 0.2, 0.3], dt=0.1),
         "failed plant": bik.track_model_free(failing_plant(), circle, [0.1, 0.2, 0.3], dt=0.1),
         "step": bik.Tracker(arm, q[0], dt=0.1, limits=limits).step(arm.fk(q[1])),

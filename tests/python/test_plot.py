@@ -222,3 +222,16 @@ def test_a_tracked_path_is_animated(tracked: bik.TrackResult, tmp_path: Path, mo
     assert (tmp_path / "track.gif").read_bytes().startswith(b"GIF")
     with pytest.raises(bik.InvalidInputError, match=r"^result must be a Plan or a TrackResult, got 3$"):
         bik.plot.animation(3)  # type: ignore[arg-type]
+
+
+def test_a_plan_shows_the_speed_of_its_tip_and_the_limits() -> None:
+    robot, start = bik.Robot.named("panda"), np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.5, 0.8])
+    limits = bik.Limits(acceleration=5.0, tip_speed=0.3, tip_turn_speed=9.0)
+    plan = bik.plan_point_to_point(robot, start_q=start, end_q=start + 0.4, limits=limits)
+    axes = {panel.get_ylabel(): panel for panel in plan.plot().axes}
+    drawn, *bounds = axes["tip speed [m/s]"].lines
+    time, speed = np.asarray(drawn.get_xdata()), np.asarray(drawn.get_ydata())
+    places = robot.fk(plan.trajectory.at(time)[0])[:, :3, 3]
+    np.testing.assert_allclose(speed, np.linalg.norm(np.gradient(places, time, axis=0), axis=1), atol=0.02)
+    assert [bound.get_ydata()[0] for bound in bounds] == [0.3]
+    assert len(axes["tip turn speed [rad/s]"].lines) == 1  # its limit is far above

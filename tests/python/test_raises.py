@@ -55,6 +55,17 @@ MEASURED_Q = UR5.random_configurations(40, seed=1)
 MEASURED = UR5.fk(MEASURED_Q)[:, :3, 3]
 ONE_Q = HELD.random_configurations(10, seed=1)
 CALIBRATED = bik.calibrate(HELD, ONE_Q, HELD.fk(ONE_Q))
+HERE = UR5.fk(UR5_Q)
+
+
+def raised(height: float) -> np.ndarray:
+    """The pose of the UR5e's tip, this much higher (m)."""
+    pose = HERE.copy()
+    pose[2, 3] += height
+    return pose
+
+
+LINE_UP = api.moves.Line(raised(0.1))
 BEYOND, EDGE, ONWARD = Q + 9.5 * np.eye(7)[1], Q + 2.89 * np.eye(7)[0], np.eye(7)[0]
 BALL = bik.obstacles.Sphere((2.0, 0.0, 0.0), 0.1)
 RATED = bik.Limits(velocity=1.0, acceleration=2.0)
@@ -65,6 +76,7 @@ CROSSED = bik.Limits(lower=1.0, upper=-1.0, velocity=1.0, acceleration=2.0)
 WIDE = bik.Limits(lower=-50.0, upper=50.0)
 WITHIN = bik.tasks.Position(region=((0.2, -0.3, 0.3), (0.6, 0.3, 0.7)))
 REGION = ((-0.5, -0.5, 0.0), (0.5, 0.5, 0.0))
+SLAB = bik.obstacles.Box((0, 0, 0), (0.4, 0.4, 0.2))
 LINE, LINE_XY = [[0.4, 0.0, 0.5], [0.4, 0.1, 0.5]], [[0.8, 0.1, 0.0], [0.7, 0.3, 0.0]]
 CIRCLE = bik.paths.circle(center=(0.4, 0.0, 0.5), diameter=0.1, duration=1.0)
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], np.array([Q, Q + 0.1]))
@@ -200,6 +212,9 @@ ROWS: list[Row] = [
     ("obstacles.clearance", Invalid, lambda at: api.obstacles.clearance(THICK, Q, [1]), 'obstacle 0 must be made by bik.obstacles, such as Sphere or Box, got 1'),
     ("obstacles.nearest", Invalid, lambda at: api.obstacles.nearest(BARE, np.zeros(7), [BALL]), f"robot 'iiwa14' {NO_CAPSULES}"),
     ("obstacles.nearest", Invalid, lambda at: api.obstacles.nearest(THICK, Q, [1]), 'obstacle 0 must be made by bik.obstacles, such as Sphere or Box, got 1'),
+    ("Limits", Limit, lambda at: api.Limits(tip_speed=0.0), "tip_speed is 0: it must be positive; None means no limit"),
+    ("Limits", Invalid, lambda at: api.Limits(tip_speed={}), "tip_speed: the dict is empty; name one tip at least"),
+    ("time_optimal", Unsupported, lambda at: api.time_optimal([[0.0], [1.0]], limits=api.Limits(acceleration=1.0, tip_speed=0.1)), "time_optimal cannot honour tip speed limits: give the robot whose tips they are, or leave out limits=Limits(tip_speed=...)"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0]), "target: expected a pose (4, 4) or a position (3,), got shape (2,)"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, np.nan, 0.0]), "target must be finite, but coordinate y is NaN"),
     ("Keep", Invalid, lambda at: api.Keep([0.0, 0.0, 0.3], api.tasks.Pointing()), "task Pointing needs a target pose (4, 4), got a position (3,)"),
@@ -225,6 +240,21 @@ ROWS: list[Row] = [
     ("plan_batch", Invalid, lambda at: api.plan_batch(PANDA, [{"start_q": Q, "ende": Q}]), "problems[0]: 'ende' is no argument of a problem; its arguments: start, end, start_q, end_q, start_qd, start_slack, end_turns, approach, retreat, free_start, task, keep, limits, method, objective, obstacles, margin, self_collision, stop, seed"),
     ("plan_batch", Invalid, lambda at: api.plan_batch(PANDA, [{"start_q": Q, "end_q": Q[:2]}]), "problems[0]: end_q of robot 'panda': expected 7 joints, got 2"),
     ("plan_batch", Invalid, lambda at: api.plan_batch(PANDA, [{"start_q": Q * np.nan, "end_q": Q}]), "problems[0]: start_q must be finite, but joint 'panda_joint1' is NaN"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [], start_q=UR5_Q, limits=RATED), "the program: it has no moves: give at least one"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Wait(0.0)], start_q=UR5_Q, limits=RATED), "the program: it takes no time: all its moves end where the arm is"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [LINE_UP], start_q=UR5_Q[:2], limits=RATED), "start_q of robot 'ur5e': expected 6 joints, got 2"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [LINE_UP], start_q=UR5_Q * np.nan, limits=RATED), "start_q must be finite, but joint 'shoulder_pan_joint' is NaN"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(HERE, speed=0.0, name="up")], start_q=UR5_Q, limits=RATED), "speed of move 0 'up' must be positive and finite, got 0"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Arc(raised(0.05)[:3, 3], raised(0.1))], start_q=UR5_Q, limits=RATED), "move 0: the three points of the arc are on a line: move via off it, or give a line"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(raised(0.05), blend=0.06), api.moves.Line(HERE)], start_q=UR5_Q, limits=RATED), "move 0: its blend of 0.06 m does not fit into move 0, which is 0.05000 m long: make the blend smaller"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Line(raised(0.05), blend=0.01), api.moves.Wait(1.0)], start_q=UR5_Q, limits=RATED), "move 0: its blend of 0.01 m leads into move 1, a wait, before which the arm stops: give no blend"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(UR5, [api.moves.Joints(UR5_Q[:2])], start_q=UR5_Q, limits=RATED), "joint positions of move 0 of robot 'ur5e': expected 6 joints, got 2"),
+    ("plan_moves", Invalid, lambda at: api.plan_moves(BARE, [LINE_UP], start_q=Q, limits=RATED, obstacles=[BALL]), f"robot 'iiwa14' {NO_CAPSULES}"),
+    ("plan_moves", Limit, lambda at: api.plan_moves(UR5, [LINE_UP], start_q=UR5_Q, limits=CROSSED), "joint 'shoulder_pan_joint': lower limit 1 is above upper limit -1"),
+    ("plan_moves", Unsupported, lambda at: api.plan_moves(UR5, [LINE_UP], start_q=UR5_Q), "plan_moves cannot honour infinite acceleration limits: joint 'shoulder_pan_joint' could start at any speed; give acceleration limits"),
+    ("moves.Joints", Invalid, lambda at: api.moves.Joints(np.eye(3)), "q_or_pose: expected joint positions (n,) or a pose (4, 4), got shape (3, 3)"),
+    ("moves.Line", Invalid, lambda at: api.moves.Line([0.0, 0.0]), "pose: expected shape (4, 4), got (2,)"),
+    ("moves.Arc", Invalid, lambda at: api.moves.Arc([0.0, 0.0], np.eye(4)), "via: expected shape (3,), got (2,)"),
     ("plan_point_to_point", Invalid, lambda at: api.plan_point_to_point(PANDA, start_q=Q[:2], end_q=Q), "start_q of robot 'panda': expected 7 joints, got 2"),
     ("plan_point_to_point", Invalid, lambda at: api.plan_point_to_point(PANDA, start_q=Q * np.nan, end_q=Q), "start_q must be finite, but joint 'panda_joint1' is NaN"),
     ("plan_point_to_point", Invalid, lambda at: api.plan_point_to_point(PANDA, start_q=Q, end=[9.0, 0.0, 0.0]), 'end cannot be reached: the nearest configuration found stays 8.148 m away'),
@@ -303,6 +333,15 @@ ROWS: list[Row] = [
     ("vision.locate_arm", Invalid, lambda at: api.vision.locate_arm(np.zeros((9, 9)), PANDA, Q), "robot 'panda' is not a planar arm: all joints must rotate about z"),
     ("vision.locate_arm", Invalid, lambda at: api.vision.locate_arm(np.zeros(5), PLANAR, np.zeros(3)), 'image: expected shape (rows, columns), or (rows, columns, 3 or 4), of numbers, got (5,) of float64'),
     ("vision.locate_arm", Missing, lambda at: api.vision.locate_arm(np.zeros((9, 9)), at.without("skimage").value(PLANAR), np.zeros(3)), "locate_arm needs scikit-image: pip install 'beetle-ik[vision]'"),
+    ("paths.on_surface", Invalid, lambda at: api.paths.on_surface(SLAB, [(0, 0, 0.1), (0, 0, 1.1)]), "points[1] is 1 m from the surface, farther than within=0.06: give a larger within=, or move it nearer"),
+    ("paths.on_surface", Missing, lambda at: api.paths.on_surface(at.without("trimesh").value(SLAB), [(0, 0, 0.1), (0.1, 0, 0.1)]), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.raster", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(0, 0, 1)), "direction is along side= [0.0, 0.0, 1.0], from which the tool comes: rows run across it"),
+    ("paths.raster", Missing, lambda at: api.paths.raster(at.without("trimesh").file("part.stl", ""), spacing=0.1, direction=(1, 0, 0)), "a surface from a file needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.join", Missing, lambda at: api.paths.join(api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0)), surface=at.without("trimesh").value(SLAB)), "a line on a surface needs trimesh: pip install 'beetle-ik[surfaces]'"),
+    ("paths.join", Invalid, lambda at: api.paths.join([]), "seams: at least one is needed, got none"),
+    ("paths.Seam.path", Invalid, lambda at: api.paths.raster(SLAB, spacing=0.1, direction=(1, 0, 0), side=(0, 0, 1))[0].path(0.0), "speed must be positive and finite, got 0"),
+    ("paths.from_gcode", Invalid, lambda at: api.paths.from_gcode(at.file("part.nc", "G81 X1")), "{folder}/part.nc: line 1: G81 is not read: G0 to G3, G17 to G21, G90 and G91 are"),
+    ("paths.GcodeProgram.path", Invalid, lambda at: api.paths.from_gcode("G0 X0 Y0 Z0\nG0 X1").path(0.0), "rapid_speed must be positive and finite, got 0"),
     ("Plan.retime", TypeError, lambda at: PLAN.retime(1.0), 'limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got 1.0'),
     ("Plan.retime", Infeasible, lambda at: PLAN.retime(api.Limits(upper=[0.05, 1.7, 2.8, -0.1, 2.8, 3.7, 2.8], velocity=1.0, acceleration=2.0)), "infeasible: the path of the plan leaves the limits: highest position of joint 'panda_joint1' is 0.1000 rad, allowed 0.05000 rad"),
     ("Plan.retime", Unsupported, lambda at: PLAN.retime(VARYING), 'retime cannot honour time-varying velocity limits: give numbers'),

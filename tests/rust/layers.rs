@@ -37,7 +37,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("manipulability", &["kinematics", "robot"]),
     ("calibration", &["robot", "obstacle"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
-    ("constraint", &["kinematics", "robot", "objective", "obstacle", "task"]),
+    ("constraint", &["kinematics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
@@ -62,7 +62,7 @@ const LAYERS: &[(&str, &[&str])] = &[
         &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning", "map"],
     ),
     ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
-    ("timing", &["robot", "trajectory", "limits"]),
+    ("timing", &["robot", "trajectory", "limits", "constraint"]),
     (
         "plan",
         &[
@@ -131,6 +131,23 @@ const LAYERS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "moves",
+        &[
+            "robot",
+            "trajectory",
+            "objective",
+            "limits",
+            "constraint",
+            "obstacle",
+            "task",
+            "solver",
+            "ik",
+            "timing",
+            "plan",
+            "free_path",
+        ],
+    ),
+    (
         "tpbso",
         &[
             "robot",
@@ -162,6 +179,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "free_path",
             "approach_retreat",
             "along_path",
+            "moves",
             "tpbso",
         ],
     ),

@@ -102,6 +102,9 @@ mod timing {
     mod time_optimal;
     mod tolerance;
 }
+mod moves {
+    mod programs;
+}
 mod tpbso {
     mod wang_2019;
 }

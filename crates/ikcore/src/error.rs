@@ -219,6 +219,14 @@ pub enum Error {
         /// Shortfall, with advice.
         problem: Message,
     },
+    /// A move of a program that contradicts itself or its neighbours.
+    #[error("{what}: {problem}")]
+    InvalidMove {
+        /// The move, for example "move 2 'down'".
+        what: String,
+        /// Description of the problem, with advice.
+        problem: Message,
+    },
     /// A search found nothing, which does not prove that nothing exists.
     #[error("{what} was not found: {problem}")]
     NotFound {
@@ -435,6 +443,7 @@ impl Error {
             | Self::Srdf { problem, .. }
             | Self::Unreachable { problem, .. }
             | Self::NotFound { problem, .. }
+            | Self::InvalidMove { problem, .. }
             | Self::NoUsableEnd { problems: problem, .. }
             | Self::Infeasible { problem }
             | Self::Contradiction { problem } => vec![problem],

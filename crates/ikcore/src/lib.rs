@@ -56,7 +56,7 @@
 //! | 7 | [`ik`], [`minimize`](mod@minimize) |
 //! | 8 | [`tracking`], `timing`, `plan`, [`posture`], [`map`] |
 //! | 9 | `free_path`, `along_path` |
-//! | 10 | `approach_retreat`, `tpbso` |
+//! | 10 | `approach_retreat`, `moves`, `tpbso` |
 //! | 11 | [`planning`] |
 //! | 12 | [`batch`] |
 
@@ -86,6 +86,7 @@ pub mod math;
 pub mod message;
 pub mod minimize;
 pub mod motion;
+mod moves;
 pub mod objective;
 pub mod obstacle;
 pub mod path;

@@ -56,14 +56,17 @@ pub fn is_list(value: &Bound<'_, PyAny>) -> bool {
     value.is_exact_instance_of::<PyList>() || value.is_exact_instance_of::<PyTuple>()
 }
 
+/// Returns the numbers of an array of float64 in C order, which can be read as they are; None for any other value.
+pub fn as_they_are<'py>(value: &Bound<'py, PyAny>) -> Option<Numbers<'py>> {
+    let array = value.cast::<PyArrayDyn<f64>>().ok()?;
+    let can_be_read = value.is_exact_instance_of::<PyUntypedArray>() && array.is_c_contiguous() && is_aligned(array);
+    can_be_read.then(|| Numbers(array.clone()))
+}
+
 /// Converts an array-like to float64 in C order; copies only if needed. `what` names it in errors.
 pub fn array<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
-        && value.is_exact_instance_of::<PyUntypedArray>()
-        && array.is_c_contiguous()
-        && is_aligned(array)
-    {
-        return Ok(Numbers(array.clone()));
+    if let Some(numbers) = as_they_are(value) {
+        return Ok(numbers);
     }
     if is_masked(value)? {
         return Err(invalid(format!("{what} has masked entries: replace them first, such as by .filled(value)")));
@@ -226,7 +229,11 @@ pub fn shape_text(shape: &[usize]) -> String {
 
 /// Reads a one-dimensional array-like.
 pub fn vector(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let array = array(what, value)?;
+    one_dimension(what, &array(what, value)?)
+}
+
+/// Copies the numbers of a one-dimensional array.
+pub fn one_dimension(what: &str, array: &Numbers<'_>) -> PyResult<Vec<f64>> {
     match array.shape() {
         [_] => Ok(array.as_slice()?.to_vec()),
         shape => Err(invalid(format!("{what}: expected one dimension, got shape {}", shape_text(shape)))),

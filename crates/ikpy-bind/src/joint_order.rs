@@ -5,7 +5,7 @@ use ikcore::units;
 use numpy::{PyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::convert::{Numbers, Rows, array, is_list, own, shape_text, table, vector};
+use crate::convert::{Numbers, Rows, array, as_they_are, is_list, one_dimension, own, shape_text, table};
 use crate::error::{invalid, raise};
 use crate::python_calls;
 use crate::units::doubt;
@@ -19,18 +19,12 @@ pub fn joint_vector(robot: &Robot, what: &str, value: &Bound<'_, PyAny>) -> PyRe
 
 /// Reads one number for each joint, whatever its unit; values with names are put into the order of q.
 pub fn joint_numbers(robot: &Robot, what: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match in_order(robot, value)? {
-        Some(ordered) => vector(what, &ordered),
-        None => vector(what, value),
-    }
+    one_dimension(what, &ordered_numbers(robot, what, value)?)
 }
 
 /// Reads an array of configurations; values with names are put into the order of q.
 pub fn joint_array<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
-    let numbers = match in_order(robot, value)? {
-        Some(ordered) => array(what, &ordered),
-        None => array(what, value),
-    }?;
+    let numbers = ordered_numbers(robot, what, value)?;
     doubt(units::of_configurations(robot, what, numbers.as_slice()?))?;
     Ok(numbers)
 }
@@ -49,6 +43,17 @@ pub fn joint_rows<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> 
             let (owner, got) = (robot.name(), shape_text(shape));
             Err(invalid(format!("{what} of robot '{owner}': expected shape ({n},) or (m, {n}), got {got}")))
         }
+    }
+}
+
+/// Reads an array of configurations, whatever their unit; values with names are put into the order of q.
+fn ordered_numbers<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
+    if let Some(numbers) = as_they_are(value) {
+        return Ok(numbers);
+    }
+    match in_order(robot, value)? {
+        Some(ordered) => array(what, &ordered),
+        None => array(what, value),
     }
 }
 

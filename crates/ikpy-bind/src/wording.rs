@@ -10,7 +10,7 @@ pub fn said(message: &Message) -> String {
 /// Returns the spelling of a setting in Python.
 pub fn spelt(setting: &Setting) -> String {
     let words = match setting {
-        Setting::Limit(kind) => return format!("limits=Limits({kind}=...)"),
+        Setting::Limit(kind) => return format!("limits=Limits({}=...)", kind.replace(' ', "_")),
         Setting::Method(name) => return format!("method=\"{name}\""),
         Setting::First(part) => return format!("task=tasks.Pose(first=\"{part}\")"),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),

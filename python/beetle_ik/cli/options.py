@@ -77,6 +77,7 @@ Jerk = Annotated[
     str | None,
     typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint: j1,j2,...; default: none."),
 ]
+TipSpeed = Annotated[float | None, typer.Option("--tip-speed", help="Largest speed of the tip in m/s; default: none.")]
 SceneFile = Annotated[
     Path | None, typer.Option("--scene", help="Obstacles: a JSON file of shapes; the page on scenes has the format.")
 ]

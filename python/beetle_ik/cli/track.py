@@ -24,6 +24,7 @@ from .options import (
     SolverName,
     Start,
     TipLink,
+    TipSpeed,
     Trusted,
     UrdfFile,
     Velocity,
@@ -95,6 +96,7 @@ def track(
     ] = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
+    tip_speed: TipSpeed = None,
     ease: Annotated[
         bool,
         typer.Option("--ease", help="Begin with an approach from rest that meets the moving path within the limits."),
@@ -136,7 +138,7 @@ def track(
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
-    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration, jerk)
+    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration, jerk, tip_speed)
     with results_folder(out) as folder:
         result = track_path(
             arm,
@@ -164,7 +166,11 @@ def track(
 
 
 def _limits(
-    velocity: str | None, velocity_sinusoid: str | None, acceleration: str | None, jerk: str | None
+    velocity: str | None,
+    velocity_sinusoid: str | None,
+    acceleration: str | None,
+    jerk: str | None,
+    tip_speed: float | None,
 ) -> tuple[Limits | None, str | None]:
     """Returns the given limits, and the name of the option that gave the velocity limit."""
     if velocity is not None and velocity_sinusoid is not None:
@@ -181,6 +187,8 @@ def _limits(
         given["acceleration"] = limit("--acceleration-limit", acceleration)
     if jerk is not None:
         given["jerk"] = limit("--jerk-limit", jerk)
+    if tip_speed is not None:
+        given["tip_speed"] = tip_speed
     return Limits(**given) if given else None, limits_from
 
 

@@ -2,6 +2,7 @@
 
 _OPTIONS = {
     **{f"limits=Limits({kind}=...)": f"--{kind}-limit" for kind in ("velocity", "acceleration", "jerk")},
+    "limits=Limits(tip_speed=...)": "--tip-speed",
     **{f'method="{name}"': f"--method {name}" for name in ("minmax", "timed", "tpbso")},
     "np.radians converts degrees": "90deg is 90 degrees",
     "degrees=True takes degrees": "90deg is 90 degrees",

@@ -1,4 +1,4 @@
-"""Figure and animation of a planned motion: the arm along its path, the search history, the joints over time."""
+"""Figure and animation of a planned motion: the arm along its path, the search history, joints and tips over time."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from .frames import Frames
 from .joints import draw_joints
 from .shapes import draw_from_above, draw_in_space, joints_to_tip
 from .style import BLACK, BLUE, GREEN, SKY, VERMILION
+from .tip_speed import draw_tip_speeds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from .._core import Plan, TrackResult
 
+ROWS = 4  # panels over time
 _SAMPLES = 801
 _SNAPSHOTS = 6
 _FLAT = 1e-9  # m
@@ -87,10 +89,12 @@ class Scene:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """Draws the arm along its path (left), the search history below if there is one, and the joint motions (right)."""
-    grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15])
+    """Draws the arm along its path (left), the search history below if there is one, joints and tip speed (right)."""
+    halves = figure.add_gridspec(1, 2, width_ratios=[1.0, 1.15])
+    left, right = (figure.add_subfigure(halves[0, i]) for i in range(2))  # each has its own margins
+    grid = left.add_gridspec(ROWS, 1)
     searched = len(plan.history) > 1
-    scene = Scene(figure, grid[: 2 if searched else 3, 0], plan)
+    scene = Scene(left, grid[: ROWS - 1 if searched else ROWS, 0], plan)
     for i in range(_SNAPSHOTS):
         share = i / (_SNAPSHOTS - 1)
         label = "arm" if i == _SNAPSHOTS - 1 else None
@@ -98,14 +102,17 @@ def draw(figure: Figure, plan: Plan) -> None:
     scene.draw_way()
     scene.axes.legend(loc="upper right", bbox_to_anchor=(-0.12, 1.0), fontsize="small")
     if searched:
-        _draw_search(figure.add_subplot(grid[2, 0]), plan)
+        _draw_search(left.add_subplot(grid[ROWS - 1, 0]), plan)
     time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
     labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
-    panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
-    for axes, label, values in zip(panels, labels, plan.trajectory.at(time), strict=True):
+    panels = right.subplots(ROWS, 1)
+    for axes, label, values in zip(panels[:-1], labels, plan.trajectory.at(time), strict=True):
         draw_joints(axes, time, values, plan.trajectory.joint_names)
-        axes.set(ylabel=label, xlim=(0.0, plan.trajectory.duration))
-    panels[2].set_xlabel("time [s]")
+        axes.set_ylabel(label)
+    draw_tip_speeds(panels[-1], plan, _SAMPLES)
+    for axes in panels:
+        axes.set_xlim(0.0, plan.trajectory.duration)
+    panels[-1].set_xlabel("time [s]")
     panels[0].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize="small")
     figure.suptitle(fill(f"{plan.robot.name}: {plan.message}", _TITLE_WIDTH))
 

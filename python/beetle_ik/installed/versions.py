@@ -14,6 +14,7 @@ EXTRAS = {
     "report": ["jinja2"],
     "robots": ["robot_descriptions", "xacro"],
     "sim": ["mujoco"],
+    "surfaces": ["trimesh"],
     "view": ["pycollada", "trimesh", "viser"],
     "vision": ["scikit-image"],
 }

@@ -340,7 +340,7 @@ class JointPlans(Attack):
         said = str(error)
         allowed = {
             "moving": "would get to" in said,  # too fast to stop before a position limit
-            "line": "no straight line" in said,
+            "line": "no straight" in said,
         }.get(case["begin"], False)
         jumps = "jumps" in said and case["orders"] == 3 and case["begin"] == "moving"  # from a velocity, retimed
         if not (same or allowed or jumps):

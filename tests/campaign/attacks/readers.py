@@ -126,6 +126,19 @@ class Csv(SceneFile):
         """Times that do not increase are refused by the motion, which knows no file."""
 
 
+class GcodeFile(SceneFile):
+    name = "gcode"
+    promise = "A damaged program in G-code is read or refused by name"
+    page = "surfaces"
+    folder = "gcode"
+    call = "program = bik.paths.from_gcode({file!r})\nposes, seams = program.poses, program.seams()"
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        if not np.isfinite(left["poses"]).all():
+            raise BrokenError("a program was read whose poses are not finite")
+        return 1
+
+
 class Npz(Reader):
     name = "npz"
     promise = "A damaged npz file, or one with other arrays, is read or refused by name"
@@ -272,4 +285,16 @@ def samples() -> dict[str, bytes]:
     return _SAMPLES
 
 
-ATTACKS = [Urdf(), Srdf(), SceneFile(), MoveitScene(), Octomap(), Csv(), Npz(), MapFile(), Mesh(), Stored()]
+ATTACKS = [
+    Urdf(),
+    Srdf(),
+    SceneFile(),
+    MoveitScene(),
+    Octomap(),
+    Csv(),
+    GcodeFile(),
+    Npz(),
+    MapFile(),
+    Mesh(),
+    Stored(),
+]

@@ -22,7 +22,7 @@ use ikcore::ik::{
     AllOptions, SelfMotionOptions, Solution, SolveOptions, self_motion, solve_all, solve_all_tips, solve_tips,
 };
 use ikcore::interrupt::{checkpoint, interruptible};
-use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack};
+use ikcore::limits::{Field, Limits, Profile, Sinusoid, StartSlack, TipField};
 use ikcore::load::{Dh, DhTable, covered_mesh, read_mesh};
 use ikcore::manipulability::{Motion, manipulability, manipulability_all};
 use ikcore::map::{MapGrid, MapLayout, MapOptions};
@@ -34,8 +34,9 @@ use ikcore::objective::Bounds;
 use ikcore::obstacle::{Obstacle, Obstacles, Scene, Surroundings};
 use ikcore::path::{Circle, Curve, Hypotrochoid, Path, Plane, Polyline, Reference, Rose, Samples, Waypoints};
 use ikcore::planning::{
-    AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Plan, PointToPointOptions, SplineEnds,
-    StraightLine, TimingOptions, TipPath, plan_along_path, plan_point_to_point, time_optimal, time_optimal_within,
+    AlongPathOptions, ConstantLimits, Endpoint, JointPath, LineFrame, Move, MoveKind, MovesOptions, Plan,
+    PointToPointOptions, SplineEnds, StraightLine, TimingOptions, TipPath, plan_along_path, plan_moves,
+    plan_point_to_point, time_optimal, time_optimal_within,
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;

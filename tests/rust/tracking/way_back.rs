@@ -318,3 +318,25 @@ fn the_same_seed_gives_the_same_way_back() {
     };
     assert_eq!(run(), run());
 }
+
+#[test]
+fn joints_that_equal_limits_lock_are_named_so() {
+    let start = [0.0, -1.5, 1.5, -1.5, -1.5, 0.0];
+    for locked in [vec![1, 2], vec![2]] {
+        let robot = robot("ur5e").with_limits(|j, joint| {
+            if locked.contains(&j) {
+                (joint.lower, joint.upper) = (start[j], start[j]);
+            }
+        });
+        let robot = robot.unwrap();
+        let mut session = Session::new(&robot, &start, DT, &TrackOptions::default()).unwrap();
+        let target = Target::Position([0.3, 0.13, 0.1]);
+        let last = (0..300).map(|_| session.step(&target, &mut Unattended).unwrap()).last().unwrap();
+        let said = last.message_with(last.status.advice(), &[], |j| robot.joints()[j].name.clone());
+        let holder = match locked.len() {
+            1 => "joint 'elbow_joint', locked by equal limits, holds the arm",
+            _ => "'shoulder_lift_joint' (locked by equal limits), 'elbow_joint' (locked by equal limits)",
+        };
+        assert!(said.contains(holder), "{said}");
+    }
+}

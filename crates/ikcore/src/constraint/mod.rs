@@ -11,6 +11,8 @@
 //! | `tip_bend` | how far a tip, or one tip seen from another, gets off the straight line between two configurations |
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `onto` | configurations moved to where constraints hold |
+//! | `tip_jet` | velocity and turn rate of a tip over an interval |
+//! | `tip_rates` | limits of the speed, acceleration and turn speed of tips |
 
 mod drift;
 mod gauge;
@@ -18,9 +20,13 @@ mod keep;
 mod keep_sweep;
 mod onto;
 mod tip_bend;
+mod tip_jet;
+mod tip_rates;
 
 pub use keep::Keep;
 pub(crate) use keep::{KeepRow, refuse_broken};
 pub(crate) use keep_sweep::KeepScratch;
 pub use keep_sweep::{Broken, KeepSweep};
 pub(crate) use onto::{KeepTasks, Onto};
+pub(crate) use tip_jet::{SQUARE, TipJet, VectorJet};
+pub(crate) use tip_rates::{TIGHT, TipExcess, TipInterval, TipRates};

@@ -48,13 +48,16 @@ pub(super) fn begin(
     check(search, velocity)?;
     refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
-    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot));
+    // Motions of state_to_state know nothing of tips; those that keep their limits are taken.
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot)).without_tips();
+    let constant = search.limits;
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
     let mut kept = (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps));
     let mut is_free = |motion: &Trajectory| {
         let whole = [0.0, motion.duration()];
-        kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
+        constant.keep_tips(motion)
+            && kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
             && sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
     };
     let pairs = search.pairs(PAIRS, monitor)?;
@@ -80,6 +83,10 @@ pub(super) fn begin(
     let braking = stop(&from, &limits)?;
     if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
+    }
+    if !constant.keep_tips(&braking) {
+        let problem = message!["at ", Setting::StartVelocity, " the arm cannot stop within the limits of its tips"];
+        return Err(Error::Infeasible { problem });
     }
     let problem = message![
         "at ",

@@ -41,6 +41,12 @@ impl Transmission {
         Self { of_vector: true, ..Self::turn(joint, 1.0, 0.0) }
     }
 
+    /// The rotation (rad) or translation (m) per unit of the joint.
+    #[inline]
+    pub fn scale(&self) -> f64 {
+        if self.turn_scale == 0.0 { self.slide_scale } else { self.turn_scale }
+    }
+
     /// Returns the velocity of `point` per unit joint speed, for a point fixed in this element's frame `moved`.
     pub fn velocity(&self, moved: &Frame, point: &[f64; 3]) -> [f64; 3] {
         let Frame { axes: [_, _, axis], origin } = moved;

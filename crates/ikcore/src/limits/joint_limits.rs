@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::field::Field;
 use super::profile::Profile;
+use super::tip_limits::{TipField, TipLimits};
 use crate::error::{Error, Result};
 use crate::message::Message;
 use crate::objective::Bounds;
@@ -24,6 +25,8 @@ pub struct Limits {
     /// Whether the velocity limits are those of the robot. Infinite ones that were given are meant.
     #[serde(skip)]
     pub(super) own_velocity: bool,
+    /// Limits of tips.
+    tips: TipLimits,
 }
 
 impl Limits {
@@ -38,6 +41,7 @@ impl Limits {
             acceleration: None,
             jerk: None,
             own_velocity: true,
+            tips: TipLimits::default(),
         }
     }
 
@@ -64,7 +68,16 @@ impl Limits {
     pub fn none(joints: Vec<String>) -> Self {
         let all = |value: f64| vec![Profile::Constant(value); joints.len()];
         let (lower, upper, velocity) = (all(f64::NEG_INFINITY), all(f64::INFINITY), all(f64::INFINITY));
-        Self { joints, lower, upper, velocity, acceleration: None, jerk: None, own_velocity: false }
+        Self {
+            joints,
+            lower,
+            upper,
+            velocity,
+            acceleration: None,
+            jerk: None,
+            own_velocity: false,
+            tips: TipLimits::default(),
+        }
     }
 
     /// Replaces one field for all joints, with one profile per joint or a single one for all of them.
@@ -94,6 +107,26 @@ impl Limits {
         Ok(self)
     }
 
+    /// Replaces the limits of one kind on the motion of tips (m/s, m/s^2, rad/s), with one number for all tips or one per tip; infinite
+    /// where a tip has none.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] without a number, [`Error::OutOfRange`] unless they are positive.
+    pub fn with_tip_limit(mut self, field: TipField, values: Vec<f64>) -> Result<Self> {
+        self.tips.replace(field, values)?;
+        Ok(self)
+    }
+
+    /// The limits of one kind on the motion of tips, one number or one per tip; empty without any.
+    pub fn of_tips(&self, field: TipField) -> &[f64] {
+        self.tips.of(field)
+    }
+
+    /// The limits of tips.
+    pub(crate) fn tips(&self) -> &TipLimits {
+        &self.tips
+    }
+
     /// The profiles of a field, one per joint; `None` without such limits.
     pub fn field(&self, field: Field) -> Option<&[Profile]> {
         match field {
@@ -110,7 +143,7 @@ impl Limits {
     /// # Errors
     /// None in practice: the limits were checked.
     pub(crate) fn narrowest(&self, from: f64, to: f64) -> Result<Self> {
-        let mut narrowest = Self::none(self.joints.clone());
+        let mut narrowest = Self { tips: self.tips.clone(), ..Self::none(self.joints.clone()) };
         let ranges: Vec<[f64; 2]> = (0..self.joints.len()).map(|j| self.position_range(j, from, to)).collect();
         let constants = |values: Vec<f64>| values.into_iter().map(Profile::Constant).collect();
         narrowest = narrowest.replace(Field::Lower, constants(ranges.iter().map(|range| range[0]).collect()))?;
@@ -167,6 +200,24 @@ impl Limits {
                 Err(Error::UnsupportedLimit { field: field.to_string(), method: method.into(), remedy: remedy.into() })
             }
         }
+    }
+
+    /// Checks that no tip has a limit of these kinds, which `method` does not keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn refuse_tips(
+        &self,
+        fields: &[TipField],
+        method: impl Into<Message>,
+        remedy: impl Into<Message>,
+    ) -> Result<()> {
+        self.tips.refuse(fields, method, remedy)
+    }
+
+    /// These limits without those of tips.
+    pub(crate) fn without_tips(self) -> Self {
+        Self { tips: TipLimits::default(), ..self }
     }
 
     /// Returns the values of a field, one per joint; empty without such limits. An error if they vary over time, which
@@ -226,13 +277,13 @@ impl Limits {
         &self.joints[joint]
     }
 
-    /// Checks that these limits have as many joints as `robot`.
+    /// Checks that these limits have as many joints and tips as `robot`.
     ///
     /// # Errors
     /// [`Error::WrongLength`] if not.
     pub(crate) fn require_for(&self, robot: &Robot) -> Result<()> {
         if self.joints.len() == robot.dof() {
-            return Ok(());
+            return self.tips.require_for(robot);
         }
         let (what, expected) = (format!("limits for robot '{}'", robot.name()), format!("{} joints", robot.dof()));
         Err(Error::WrongLength { what: what.into(), expected, got: self.joints.len() })

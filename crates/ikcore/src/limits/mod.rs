@@ -7,6 +7,7 @@
 //! | `joint_limits` | [`Limits`]: all joints, all fields |
 //! | `pace` | joints without any limit, and joints that a limit of zero locks |
 //! | `start_gate` | starts and configurations as a caller reads them |
+//! | `tip_limits` | [`TipField`], `TipLimits`: limits of the motion of tips |
 //! | `tick_box` | `TickBox`: position and velocity limits as the box of one tick |
 //! | `braking` | acceleration limits narrow that box, so that joints can stop in time |
 
@@ -16,6 +17,7 @@ mod pace;
 mod profile;
 mod start_gate;
 mod tick_box;
+mod tip_limits;
 
 pub use field::Field;
 pub use joint_limits::Limits;
@@ -25,3 +27,5 @@ pub use profile::{Profile, Sinusoid};
 pub use start_gate::{AdmittedStart, JointOutside, StartSlack};
 pub use tick_box::LimitAt;
 pub(crate) use tick_box::TickBox;
+pub use tip_limits::TipField;
+pub(crate) use tip_limits::TipLimits;

@@ -21,6 +21,7 @@
 pub(crate) mod arctangent;
 pub(crate) mod arithmetic;
 pub(crate) mod banded;
+pub(crate) mod bernstein;
 pub mod block_step;
 pub mod box_step;
 mod columns;

@@ -3,7 +3,7 @@
 use super::arm_state::ArmState;
 use super::synchronised::Synchronised;
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, ROUNDING, StartSlack};
+use crate::limits::{Field, Limits, ROUNDING, StartSlack, TipField};
 use crate::math::one_joint::{MotionState, Rates, Transfer};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
@@ -97,6 +97,7 @@ pub fn stop(from: &ArmState, limits: &Limits) -> Result<Trajectory> {
 
 /// The limits of each joint on velocity, acceleration and jerk.
 fn rates(limits: &Limits) -> Result<Vec<Rates>> {
+    limits.refuse_tips(&TipField::ALL, METHOD, "each joint has its own time; plan_point_to_point keeps them")?;
     limits.validate(0.0, 0)?;
     let constants = |field: Field| -> Result<Vec<f64>> {
         let mut values = limits.constants(field, METHOD, "give numbers")?;

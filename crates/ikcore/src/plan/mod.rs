@@ -8,6 +8,7 @@
 //! | `tpbso_options` | [`Tpbso`] |
 //! | `cost` | [`Cost`]: duration, joint travel or tip travel |
 //! | `plan` | [`Plan`]: the result |
+//! | `move_report` | how each move of a program came out |
 //! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `joined` | a plan, and motions before and after it |
 //! | `kept_along` | what holds along a finished motion |
@@ -22,6 +23,7 @@ mod deadline;
 mod endpoint;
 mod joined;
 mod kept_along;
+mod move_report;
 #[allow(clippy::module_inception)]
 mod plan;
 mod planar_arm;
@@ -41,6 +43,7 @@ pub use endpoint::Endpoint;
 pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
 pub(crate) use kept_along::broken_along;
+pub use move_report::{MoveReport, SpeedBound};
 pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};

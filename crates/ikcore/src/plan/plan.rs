@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::collision_checks::least_clearance;
 use super::cost::Cost;
+use super::move_report::MoveReport;
 use super::planar_arm::Orientations;
 use crate::constraint::Keep;
 use crate::error::{Error, Result};
@@ -62,6 +63,8 @@ pub struct Plan {
     pub path: Vec<JointPath>,
     /// The largest acceleration of a joint without an acceleration limit; `None` if all joints have one.
     pub peak: Option<Peak>,
+    /// The moves of a program, in order; empty for other plans.
+    pub moves: Vec<MoveReport>,
     /// Bounds that the trajectory violates; empty for a plan that succeeded.
     pub violations: Vec<Violation>,
     /// [`Status::Solved`] for a trajectory without violations; else why the search ended.
@@ -140,6 +143,7 @@ impl Plan {
             reference: None,
             redundancy: vec![],
             path: vec![],
+            moves: vec![],
             peak: None,
             violations: vec![],
             status: Status::Solved,

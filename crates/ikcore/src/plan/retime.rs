@@ -29,6 +29,10 @@ impl Plan {
             let problem = message!["only a plan without violations can be retimed, and this one: ", self.message()];
             return Err(Error::Infeasible { problem });
         }
+        if !self.moves.is_empty() {
+            let problem = "a program keeps the speeds of its moves: plan it again with these limits".into();
+            return Err(Error::Infeasible { problem });
+        }
         let trajectory = if self.path.is_empty() {
             scaled(&self.trajectory, &limits)?
         } else {

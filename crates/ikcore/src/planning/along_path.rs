@@ -35,7 +35,7 @@ pub fn plan_along_path(
     let keeps = PathKeeps { robot, keeps: &options.keeps };
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
-    let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), options.method.named())?;
+    let limits = ConstantLimits::for_robot(keeps.robot, options.limits.as_ref(), options.method.named())?;
     let mut plan = match options.admitted_start(robot, &limits)? {
         None => plan_admitted(robot, &tip_path, keeps, options, monitor),
         Some(start) => plan_from(robot, &tip_path, keeps, (start, &limits), options, monitor),

@@ -11,6 +11,7 @@
 //! | `free_path` | between two ends: the nearest configurations, joined directly or around obstacles |
 //! | `approach_retreat` | straight lines at both ends of it, and the way out of a contact at the start |
 //! | `along_path` | a path of the tip: redundancy and timing in one search, the same among obstacles |
+//! | `moves` | programs of moves: joint moves, lines, arcs, waits, with blends between them |
 //! | `tpbso` | both problems as published by Wang et al. (2019) |
 //!
 //! | file | what |
@@ -25,10 +26,11 @@ mod point_to_point;
 mod several_tips;
 
 pub use crate::along_path::TipPath;
+pub use crate::moves::{JointGoal, Move, MoveKind, MovesOptions, plan_moves};
 pub use crate::plan::{
     AlongPathMethod, AlongPathOptions, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact,
-    LineFrame, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod, PointToPointOptions,
-    StraightLine, Tpbso,
+    LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod,
+    PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{
     ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,

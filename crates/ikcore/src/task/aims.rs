@@ -98,8 +98,7 @@ impl<'a> Aims<'a> {
 
     /// Whether targets of several tips of `robot` have an order.
     pub(crate) fn has_levels(&self, robot: &Robot) -> bool {
-        let differs = |task: &CheckedTask| task.first.is_some() || task.level != self.tasks[0].level;
-        robot.tip_count() > 1 && self.tasks.iter().any(differs)
+        robot.tip_count() > 1 && CheckedTask::have_levels(self.tasks)
     }
 
     /// Whether any task is for a pair of tips that is held.

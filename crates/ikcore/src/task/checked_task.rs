@@ -55,6 +55,11 @@ impl<T: Into<Criterion>> From<T> for CheckedTask {
 }
 
 impl CheckedTask {
+    /// Whether these `tasks` of several tips have an order.
+    pub(crate) fn have_levels(tasks: &[Self]) -> bool {
+        tasks.iter().any(|task| task.first.is_some() || task.level != tasks[0].level)
+    }
+
     /// Part that comes first where the whole of `target` cannot be met by the only tip of a robot with `dof` joints; `None` where
     /// both parts are balanced.
     pub(crate) fn comes_first(&self, target: &Target, dof: usize) -> Option<First> {

@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use super::joint_path::JointPath;
 use super::violation::Violation;
+use crate::constraint::{TIGHT, TipExcess, TipRates};
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, no_pace};
+use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
@@ -25,6 +26,8 @@ pub struct ConstantLimits {
     pub(crate) acceleration: Vec<f64>,
     /// Jerk limits (rad/s^3, m/s^3).
     pub(crate) jerk: Vec<f64>,
+    /// Limits of the tips of the robot.
+    pub(super) tips: Option<TipRates>,
     /// Names, and kinds where a robot is known.
     joints: Vec<(String, Option<JointKind>)>,
 }
@@ -38,10 +41,24 @@ impl ConstantLimits {
     pub fn new(limits: &Limits, method: impl Into<Message>) -> Result<Self> {
         let method = method.into();
         let remedy = "when a point of the path is passed is what it looks for; give numbers";
+        limits.refuse_tips(&TipField::ALL, method.clone(), "give the robot whose tips they are")?;
         let joints = limits.joint_names().iter().map(|name| (name.clone(), None)).collect();
         let limits = Self::read(limits, joints, method.clone(), remedy)?;
         limits.require_accelerations(method)?;
         Ok(limits)
+    }
+
+    /// The limits of a path of `robot`, with those of its tips; `method` names the call in errors.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`] for limits that vary over time, for joints without an acceleration limit, and for limits of a tip that a
+    /// rotation vector carries; [`Error::OutOfRange`] for a limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`],
+    /// [`Error::WrongLength`].
+    pub fn of_path(robot: &Robot, limits: &Limits, method: impl Into<Message>) -> Result<Self> {
+        let method = method.into();
+        let constant = Self::for_robot(robot, Some(limits), method.clone())?;
+        constant.require_accelerations(method)?;
+        Ok(constant)
     }
 
     /// The limits for `robot`; `None` means its own. `method` names the planner in errors.
@@ -53,9 +70,14 @@ impl ConstantLimits {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), Some(joint.kind))).collect();
-        let constant = Self::read(&limits, joints, method.into(), "give numbers")?;
+        let method = method.into();
+        let tips = TipRates::new(robot, limits.tips(), method.clone())?;
+        let constant = Self::read(&limits, joints, method, "give numbers")?;
         limits.require_unlocked()?;
-        Ok(constant)
+        let farthest = constant.lower.iter().zip(&constant.upper).map(|(lower, upper)| lower.abs().max(upper.abs()));
+        let farthest: Vec<f64> = farthest.collect();
+        let tips = tips.and_then(|tips| tips.without_idle([&constant.velocity, &farthest]));
+        Ok(Self { tips, ..constant })
     }
 
     fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: Message, remedy: &str) -> Result<Self> {
@@ -71,6 +93,7 @@ impl ConstantLimits {
             velocity: constants(Field::Velocity)?,
             acceleration: constants(Field::Acceleration)?,
             jerk: constants(Field::Jerk)?,
+            tips: None,
             joints,
         })
     }
@@ -161,6 +184,15 @@ impl ConstantLimits {
         }
         let remedy = message!["leave them out, and add them with ", Setting::Retime];
         Err(Error::UnsupportedLimit { field: "jerk".into(), method: method.into(), remedy })
+    }
+
+    /// Checks that no tip has a limit, which `method` cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn refuse_tips(&self, method: impl Into<Message>) -> Result<()> {
+        let remedy = message!["add them with ", Setting::Retime];
+        self.tips.as_ref().map_or(Ok(()), |tips| tips.limits().refuse(&TipField::ALL, method, remedy))
     }
 
     /// Unit of the acceleration of a joint.
@@ -320,6 +352,25 @@ impl ConstantLimits {
                 }
             }
         }
+        let excesses = self.tips.iter().flat_map(|tips| tips.excesses(trajectory));
+        found.extend(excesses.map(|TipExcess { what, value, bound, unit }| Violation {
+            what,
+            value,
+            bound,
+            unit: unit.into(),
+        }));
         found
+    }
+
+    /// Whether `motion` keeps the limits of tips.
+    pub(crate) fn keep_tips(&self, motion: &Trajectory) -> bool {
+        self.tips.as_ref().is_none_or(|tips| tips.slowdown(motion, 1.0 + ROUNDING) <= 1.0 + ROUNDING)
+    }
+
+    /// Slows `motion` down as a whole where it exceeds the limits of tips.
+    pub(super) fn within_tip_limits(&self, motion: Trajectory) -> Result<Trajectory> {
+        let Some(tips) = &self.tips else { return Ok(motion) };
+        let factor = tips.slowdown(&motion, 1.0);
+        if factor <= 1.0 { Ok(motion) } else { motion.slowed(factor * (1.0 + TIGHT)) }
     }
 }

@@ -17,6 +17,9 @@ pub(super) struct Segment {
 /// Largest number of grid points, which takes a tenth of a second; more count as a mistake.
 pub(super) const MAX_GRIDPOINTS: usize = 200_000;
 
+/// A squared path speed that represents no bound; finite, to leave room for arithmetic.
+pub(super) const UNLIMITED: f64 = 1e100;
+
 /// Checks that a grid is not too coarse to start and stop on, nor too fine to be intended.
 ///
 /// # Errors

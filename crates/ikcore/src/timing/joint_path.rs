@@ -17,7 +17,7 @@ const VANISHING: f64 = 1e-12;
 
 /// A continuous path of all joints: piecewise cubics q(s) in the path parameter s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)")]
+#[serde(try_from = "StoredParts")]
 pub struct JointPath {
     joints: Vec<String>,
     /// Path parameters of the starts of all pieces, and of the end of the last.
@@ -28,23 +28,28 @@ pub struct JointPath {
     /// Coefficients of powers of s since the start of the piece: by piece, then by power, then by joint, because a grid
     /// point needs one power of all joints.
     coefficients: Vec<f64>,
+    /// Largest path speed ds/dt on each piece; empty where only the joints limit it.
+    speeds: Vec<f64>,
 }
 
+/// The fields of a path, in order.
+type StoredParts = (Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
+
 /// Checks stored paths again.
-impl TryFrom<(Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)> for JointPath {
+impl TryFrom<StoredParts> for JointPath {
     type Error = Error;
 
-    fn try_from(parts: (Vec<String>, Vec<f64>, Vec<f64>, Vec<f64>)) -> Result<Self> {
-        let (joints, breaks, lengths, coefficients) = parts;
+    fn try_from((joints, breaks, lengths, coefficients, speeds): StoredParts) -> Result<Self> {
         let pieces = lengths.len();
         let fits = pieces > 0 && breaks.len() == pieces + 1 && coefficients.len() == pieces * POWERS * joints.len();
         let increases = breaks.windows(2).all(|ends| ends[0] < ends[1]) && lengths.iter().all(|length| *length > 0.0);
-        if joints.is_empty() || !fits || !increases {
+        let paced = (speeds.is_empty() || speeds.len() == pieces) && speeds.iter().all(|speed| *speed > 0.0);
+        if joints.is_empty() || !fits || !increases || !paced {
             return Err(Error::InvalidPath { problem: "its parts contradict each other".into() });
         }
         require_finite("joint path", &breaks, |i| format!("break {i}"))?;
         require_finite("joint path", &coefficients, |i| format!("coefficient {i}"))?;
-        Ok(Self::from_parts(joints, breaks, lengths, coefficients))
+        Ok(Self { joints, breaks, lengths, coefficients, speeds })
     }
 }
 
@@ -68,12 +73,32 @@ impl PathEnd {
 impl JointPath {
     /// A path of pieces that were already checked.
     pub(super) fn from_parts(joints: Vec<String>, breaks: Vec<f64>, lengths: Vec<f64>, coefficients: Vec<f64>) -> Self {
-        Self { joints, breaks, lengths, coefficients }
+        Self { joints, breaks, lengths, coefficients, speeds: Vec::new() }
+    }
+
+    /// The same path with a largest path speed ds/dt on each piece, positive; infinite where only the joints limit it.
+    pub(crate) fn with_speeds(self, speeds: Vec<f64>) -> Self {
+        debug_assert_eq!(speeds.len(), self.pieces());
+        Self { speeds, ..self }
+    }
+
+    /// Whether any piece has a largest path speed.
+    pub(super) fn has_speeds(&self) -> bool {
+        self.speeds.iter().any(|speed| speed.is_finite())
+    }
+
+    /// Largest path speed on a piece; infinite where only the joints limit it.
+    pub(crate) fn largest_speed(&self, piece: usize) -> f64 {
+        self.speeds.get(piece).copied().unwrap_or(f64::INFINITY)
     }
 
     /// Concatenates paths, each of which starts where the previous one ends; at least one.
     pub(crate) fn joined(paths: impl IntoIterator<Item = Self>) -> Option<Self> {
         paths.into_iter().reduce(|mut all, next| {
+            if !(all.speeds.is_empty() && next.speeds.is_empty()) {
+                all.speeds = (0..all.pieces()).map(|piece| all.largest_speed(piece)).collect();
+                all.speeds.extend((0..next.pieces()).map(|piece| next.largest_speed(piece)));
+            }
             all.breaks.extend(&next.breaks[1..]);
             all.lengths.extend(&next.lengths);
             all.coefficients.extend(&next.coefficients);
@@ -110,7 +135,7 @@ impl JointPath {
     }
 
     /// Position of one joint and its first and second derivative by the path parameter, at `from` within a piece.
-    pub(super) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
+    pub(crate) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
         [
             c0 + from * (c1 + from * (c2 + from * c3)),
@@ -127,8 +152,16 @@ impl JointPath {
         }
     }
 
+    /// Writes position and dq/ds of all joints at the path parameter `s`, clamped to the path.
+    pub(crate) fn position_and_slope(&self, s: f64, q: &mut [f64], slope: &mut [f64]) {
+        let (piece, from) = self.locate(s);
+        for (joint, (q, slope)) in q.iter_mut().zip(slope).enumerate() {
+            [*q, *slope, _] = self.joint_at(piece, from, joint);
+        }
+    }
+
     /// The piece that contains the path parameter `s`, clamped to the path, and the parameter within it.
-    pub(super) fn locate(&self, s: f64) -> (usize, f64) {
+    pub(crate) fn locate(&self, s: f64) -> (usize, f64) {
         let piece = self.breaks.partition_point(|start| *start <= s).saturating_sub(1).min(self.pieces() - 1);
         (piece, s.clamp(self.breaks[0], self.breaks[self.pieces()]) - self.breaks[piece])
     }

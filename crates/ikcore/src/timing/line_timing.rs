@@ -3,6 +3,7 @@
 use super::constant_limits::ConstantLimits;
 use super::polyline::JointPolyline;
 use super::quintic::quintic;
+use super::time_optimal::{TimingOptions, time};
 use super::time_scaling::{CAUTION, within_limits};
 use crate::error::Result;
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
@@ -38,9 +39,12 @@ impl JointPolyline {
     /// Returns the faster of the motions with stops and with blends.
     pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
         let stopping = self.with_stops(limits)?;
-        match self.with_blends(limits, fractions).transpose()? {
-            Some(blended) if blended.duration() < stopping.duration() => Ok(blended),
-            _ => Ok(stopping),
+        match self.with_free_blends(limits, fractions).transpose()? {
+            Some(blended) => {
+                let blended = self.paced(blended, limits)?;
+                Ok(if blended.duration() < stopping.duration() { blended } else { stopping })
+            }
+            None => Ok(stopping),
         }
     }
 
@@ -49,6 +53,27 @@ impl JointPolyline {
         if limits.limit_jerk() {
             return self.with_stops_and_jerk(limits);
         }
+        self.paced(self.with_quintics(limits)?, limits)
+    }
+
+    /// Returns `motion`, made for these lines, within the limits of tips: slowed down as a whole or, if accelerations may jump, the fastest motion
+    /// along the lines, which slows down where they bind. Neither is faster than `motion`, so that looser limits are never slower.
+    fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+        if limits.tips.is_none() {
+            return Ok(motion);
+        }
+        let slowed = limits.within_tip_limits(motion.clone())?;
+        if slowed == motion || limits.limit_jerk() || limits.require_accelerations("lines").is_err() {
+            return Ok(slowed);
+        }
+        let along = time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default())?;
+        let ahead = motion.duration() / along.duration();
+        let along = if ahead > 1.0 { along.slowed(ahead)? } else { along };
+        Ok(if along.duration() < slowed.duration() { along } else { slowed })
+    }
+
+    /// Moves from rest to rest along each line by a quintic.
+    fn with_quintics(&self, limits: &ConstantLimits) -> Result<Trajectory> {
         let (mut knots, mut coefficients) = (vec![0.0], vec![]);
         let mut time = 0.0;
         for line in self.0.windows(2) {
@@ -89,6 +114,12 @@ impl JointPolyline {
     /// In a blend the velocity changes from that of one line to that of the next with an acceleration of shape 6 s (1 -
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
     pub(crate) fn with_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
+        let motion = self.with_free_blends(limits, fractions)?;
+        Some(motion.and_then(|motion| limits.within_tip_limits(motion)))
+    }
+
+    /// [`with_blends`](Self::with_blends) without regard to tips.
+    fn with_free_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
         let times = self.blend_times(limits, fractions)?;
         let motion = self.blended(limits, &times);
         // A blend that is just too short exceeds a jerk limit by twice as much.

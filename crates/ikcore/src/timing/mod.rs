@@ -11,6 +11,7 @@
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
 //! | `strips` | the acceleration limits |
+//! | `tip_segments` | the limits of tips over segments |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
@@ -18,6 +19,7 @@
 //! | `line_timing` | the fastest smooth timing of straight lines |
 //! | `quintic` | the quintic from rest to rest |
 //! | `time_scaling` | scaling of a whole motion in time, to its limits |
+//! | `limit_share` | how much of each limit a motion uses |
 //! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
 
 mod compose;
@@ -27,6 +29,7 @@ mod grid;
 mod jerk_limited;
 mod joint_path;
 mod least_bending;
+mod limit_share;
 mod line_timing;
 mod polyline;
 mod quintic;
@@ -36,6 +39,7 @@ mod spline;
 mod strips;
 mod time_optimal;
 mod time_scaling;
+mod tip_segments;
 mod tube;
 mod velocity_curve;
 mod violation;
@@ -44,10 +48,11 @@ mod within_tolerance;
 pub use crate::math::cubic_spline::SplineEnds;
 pub use constant_limits::ConstantLimits;
 pub use joint_path::JointPath;
+pub(crate) use limit_share::OneLimit;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};
-pub(crate) use time_optimal::{coarse_duration, time_all};
+pub(crate) use time_optimal::{coarse_duration, time, time_all};
 pub(crate) use time_scaling::scaled;
 pub use violation::Violation;
 pub use within_tolerance::time_optimal_within;

@@ -52,6 +52,11 @@ impl JointPolyline {
         Self(kept)
     }
 
+    /// The path along these lines, with a stop at each corner.
+    pub(super) fn as_path(&self, joints: Vec<String>) -> JointPath {
+        self.rounded(joints, 0.0, 0.0)
+    }
+
     /// The path along these lines, each corner replaced by a parabola from `blend` before it to `blend` after it.
     fn rounded(&self, joints: Vec<String>, blend: f64, negligible: f64) -> JointPath {
         let legs: Vec<Leg> = self.0.windows(2).map(|ends| Leg::new(&ends[0], &ends[1])).collect();

@@ -7,10 +7,12 @@
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
-use super::grid::Segment;
+use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
-use super::velocity_curve::{UNLIMITED, maximum_velocity_curve};
+use super::tip_segments::TipSegments;
+use super::velocity_curve::maximum_velocity_curve;
+use crate::constraint::TipRates;
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};
 
@@ -38,8 +40,11 @@ impl SpeedProfile {
         let mut derivatives = PathDerivatives::new(path.joints().len());
         let mut strips = Strips::new(path.joints().len());
         checkpoint()?;
-        let velocity_curve = maximum_velocity_curve(path, limits, &segments, &mut derivatives);
-        let mut pass = Pass { path, limits, segments: &segments, derivatives: &mut derivatives, strips: &mut strips };
+        let tips = limits.tips.as_ref().map(|rates| TipSegments::new(path, &segments, rates)).transpose()?;
+        let velocity_curve = maximum_velocity_curve(path, limits, &segments, tips.as_ref(), &mut derivatives);
+        let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
+        let (derivatives, strips, segments_of) = (&mut derivatives, &mut strips, &segments[..]);
+        let mut pass = Pass { path, limits, segments: segments_of, tips, derivatives, strips };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
         Ok(Self { segments, squared_speeds })
@@ -61,6 +66,8 @@ struct Pass<'a> {
     path: &'a JointPath,
     limits: &'a ConstantLimits,
     segments: &'a [Segment],
+    /// Tips whose acceleration is limited.
+    tips: Option<TipSegments<'a>>,
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
 }
@@ -71,6 +78,9 @@ impl Pass<'_> {
         let segment = self.segments[i];
         self.derivatives.fill(self.path, &segment);
         self.strips.fill(self.derivatives, segment.length, self.limits);
+        if let Some(tips) = &self.tips {
+            self.strips.add(tips, i);
+        }
         segment
     }
 

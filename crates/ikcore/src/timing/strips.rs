@@ -6,6 +6,7 @@
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
+use super::tip_segments::TipSegments;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +53,8 @@ impl Strips {
     /// its three Bernstein coefficients bound it at every point, not only at grid points.
     pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &ConstantLimits) {
         let n = limits.acceleration.len();
+        self.offsets.truncate(3 * n);
+        self.slopes.truncate(3 * n);
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
@@ -74,6 +77,21 @@ impl Strips {
                 }
             }
         }
+    }
+
+    /// Adds the strips of tips over a segment.
+    pub(super) fn add(&mut self, tips: &TipSegments<'_>, segment: usize) {
+        let mut largest = 0.0_f64;
+        tips.strips(segment, |[a, ..]| largest = largest.max(a.abs()));
+        tips.strips(segment, |[a, b, c]| {
+            if a.abs() <= NEGLIGIBLE_SLOPE * largest {
+                self.largest_x = self.largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
+            } else {
+                self.offsets.push(c / a.abs());
+                self.slopes.push(b / a);
+                self.launch = self.launch.min(c / a.abs());
+            }
+        });
     }
 
     /// The lowest upper line at `x`.

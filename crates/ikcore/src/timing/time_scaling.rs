@@ -1,6 +1,7 @@
 //! Scaling of a whole motion in time, by one factor.
 
 use super::constant_limits::ConstantLimits;
+use crate::constraint::TIGHT;
 use crate::error::{Error, Result};
 use crate::limits::{ROUNDING, no_pace};
 use crate::message::{Setting, message};
@@ -20,12 +21,14 @@ const SHORT: f64 = 1e-6;
 const SLOWINGS: usize = 20;
 
 impl ConstantLimits {
-    /// Factor by which `motion` must be slowed down to keep its velocity, acceleration and jerk limits; below 1 it can
-    /// be faster.
+    /// Factor by which `motion` must be slowed down to keep the limits of its joints on velocity, acceleration and jerk, and those of
+    /// tips; below 1 it can be faster.
     pub(super) fn slowdown(&self, motion: &Trajectory) -> f64 {
         let extremes = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
         let of_joint = |j: usize| self.joint_slowdown(j, extremes.each_ref().map(|of| of[j]));
-        (0..self.dof()).map(of_joint).fold(0.0, f64::max)
+        let of_joints = (0..self.dof()).map(of_joint).fold(0.0, f64::max);
+        let of_tips = self.tips.as_ref().map_or(0.0, |tips| tips.slowdown(motion, of_joints));
+        if of_tips > of_joints { of_tips * (1.0 + TIGHT) } else { of_joints }
     }
 
     /// Slowdown factor of one joint with these velocity, acceleration and jerk: the k-th derivative scales with the
@@ -50,9 +53,10 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Tra
     within_limits(motion.slowed(factor * CAUTION)?, limits)
 }
 
-/// Slows a motion from rest to rest where the rounding of its times makes it exceed the limits on velocity, acceleration
-/// and jerk of its joints.
-pub(super) fn within_limits(mut motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+/// Slows a motion from rest to rest where it exceeds the limits of tips, or where the rounding of its times makes it exceed
+/// those on velocity, acceleration and jerk of its joints.
+pub(super) fn within_limits(motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+    let mut motion = limits.within_tip_limits(motion)?;
     let shortest = motion.knots().windows(2).map(|ends| ends[1] - ends[0]).fold(f64::INFINITY, f64::min);
     if shortest > SHORT * motion.duration() {
         return Ok(motion);

@@ -2,33 +2,42 @@
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
-use super::grid::Segment;
+use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
+use super::tip_segments::TipSegments;
 use crate::math::polynomial::quadratic_roots;
-
-/// Represents no bound; finite, to leave room for arithmetic.
-pub(super) const UNLIMITED: f64 = 1e100;
 
 /// Largest factor by which the bound may grow between neighbouring grid points. If all joints reverse at once, dq/ds is
 /// zero and the bound infinite, and a line from a finite to an infinite bound bounds nothing.
 const LARGEST_GROWTH: f64 = 4.0;
 
 /// Returns bounds on the squared path speed x = (ds/dt)^2 at the ends of all segments, such that a motion within them,
-/// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v.
+/// with x linear in s between them, keeps the velocity limits at every point: |dq/ds| sqrt(x) <= v,
+/// and those of tips.
 pub(super) fn maximum_velocity_curve(
     path: &JointPath,
     limits: &ConstantLimits,
     segments: &[Segment],
+    tips: Option<&TipSegments<'_>>,
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
     let mut curve = at_grid_points(path, limits, segments, derivatives);
+    if let Some(tips) = tips {
+        for i in 0..segments.len() {
+            let [left, right] = tips.at_ends(i);
+            (curve[i], curve[i + 1]) = (curve[i].min(left), curve[i + 1].min(right));
+        }
+    }
     tame_poles(&mut curve);
     let mut factor_before = f64::INFINITY;
     let mut left = curve[0];
     for (i, segment) in segments.iter().enumerate() {
         derivatives.fill(path, segment);
         let right = curve[i + 1];
-        let factor = chord_factor(derivatives, limits, left, right);
+        let mut factor = chord_factor(derivatives, limits, left, right);
+        if let Some(tips) = tips {
+            factor = factor.min(1.0 / tips.excess(i, segment.length, [left, right]).max(1.0));
+        }
         curve[i] = left * factor.min(factor_before);
         (left, factor_before) = (right, factor);
     }
@@ -36,7 +45,7 @@ pub(super) fn maximum_velocity_curve(
     curve
 }
 
-/// Returns the minimum over the joints of (v / q')^2; zero at corners.
+/// Returns the minimum over the joints of (v / q')^2, and of the squared path speeds asked for; zero at corners.
 fn at_grid_points(
     path: &JointPath,
     limits: &ConstantLimits,
@@ -44,17 +53,18 @@ fn at_grid_points(
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
     let mut curve = vec![UNLIMITED; segments.len() + 1];
-    let bound = |slope: &[f64]| {
+    let bound = |piece: usize, slope: &[f64]| {
         let ratios = slope
             .iter()
             .zip(&limits.velocity)
             .map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
-        ratios.map(|ratio| ratio * ratio).fold(UNLIMITED, f64::min)
+        let asked = path.largest_speed(piece);
+        ratios.chain([asked]).map(|speed| speed * speed).fold(UNLIMITED, f64::min)
     };
     for (i, segment) in segments.iter().enumerate() {
         derivatives.fill(path, segment);
-        curve[i] = bound(&derivatives.first[0]).min(curve[i]);
-        curve[i + 1] = bound(&derivatives.first[2]);
+        curve[i] = bound(segment.piece, &derivatives.first[0]).min(curve[i]);
+        curve[i + 1] = bound(segment.piece, &derivatives.first[2]);
         if segment.piece > 0 && segment.from == 0.0 && path.has_corner_after(segment.piece - 1) {
             curve[i] = 0.0;
         }

@@ -23,6 +23,7 @@ pub(crate) fn along_path(
     let arm = PlanarArm::of(robot).ok_or_else(|| not_planar(robot))?;
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
+    limits.refuse_tips(METHOD)?;
     limits.require_velocities(METHOD)?;
     let start = options.start.as_deref();
     let elbow = start.map_or_else(|| tpbso.elbow_along_path(), |q| Ok(arm.elbow(q)))?;

@@ -10,7 +10,7 @@ use crate::task::TipError;
 pub struct Away {
     /// What is known of a way to the target.
     pub way: Way,
-    /// Joints held at their lower and upper limits, one bit each.
+    /// Joints held at their lower and upper limits, one bit each; those that equal limits lock, at both.
     pub held: [u64; 2],
 }
 
@@ -61,13 +61,18 @@ impl Away {
     /// What holds the arm, as the beginning of a sentence.
     fn holder(&self, joint: impl Fn(usize) -> String) -> String {
         let [lower, upper] = self.held;
-        let side = |j: usize| [(lower, "lower"), (upper, "upper")].into_iter().find(|(held, _)| held >> j & 1 == 1);
-        let held = (0..u64::BITS as usize).filter_map(|j| Some((joint(side(j).map(|_| j)?), side(j)?.1)));
+        let place = |j: usize| match [lower, upper].map(|held| held >> j & 1 == 1) {
+            [true, true] => Some(["locked by equal limits"; 2]),
+            [true, false] => Some(["at its lower limit", "lower"]),
+            [false, true] => Some(["at its upper limit", "upper"]),
+            [false, false] => None,
+        };
+        let held = (0..u64::BITS as usize).filter_map(|j| place(j).map(|place| (joint(j), place)));
         match held.collect::<Vec<_>>().as_slice() {
             [] => "a singular configuration holds the arm".into(),
-            [(joint, side)] => format!("joint '{joint}', at its {side} limit, holds the arm"),
+            [(joint, [place, _])] => format!("joint '{joint}', {place}, holds the arm"),
             several => {
-                let each = several.iter().map(|(joint, side)| format!("'{joint}' ({side})"));
+                let each = several.iter().map(|(joint, [_, side])| format!("'{joint}' ({side})"));
                 format!("joints at their limits, {}, hold the arm", each.collect::<Vec<_>>().join(", "))
             }
         }

@@ -82,8 +82,11 @@ impl JointMotion for CommandAndStop<'_> {
             return;
         }
         for (j, (stop, acceleration)) in self.stops.iter().enumerate() {
-            let range = stop.range() + (self.command[j] - self.from[j]).abs();
-            off_line[j] = (acceleration * (to - from).powi(2) / 8.0).min(range);
+            let step = self.command[j] - self.from[j];
+            let before = self.state.filter(|_| from < 0.0).map_or(step, |state| state.step[j]);
+            let range = stop.range() + step.abs() + if from < 0.0 { before.abs() } else { 0.0 };
+            let bend = acceleration.max((step - before).abs());
+            off_line[j] = (bend * (to - from).powi(2) / 8.0).min(range);
         }
     }
 

@@ -28,7 +28,7 @@ pub(super) fn spline(q: &[f64], n: usize, dt: f64) -> Vec<Coefficients> {
 }
 
 /// Spline segment between the second and the third of four control points.
-fn segment([before, here, next, after]: [f64; 4], dt: f64) -> Coefficients {
+pub(super) fn segment([before, here, next, after]: [f64; 4], dt: f64) -> Coefficients {
     // Differences first: small numbers lose fewer digits.
     let [first, second, third] = [here - before, next - here, after - next];
     let [bend, next_bend] = [second - first, third - second];

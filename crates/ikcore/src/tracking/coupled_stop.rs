@@ -58,6 +58,12 @@ impl CoupledStop {
         self.configurations.len().saturating_sub(2 + self.passed) as f64
     }
 
+    /// Change of the step of joint `j` by the command.
+    fn first_change(&self, j: usize) -> f64 {
+        let [from, command, ..] = &self.configurations[..] else { return 0.0 };
+        command[j] - from[j] - self.state.step[j]
+    }
+
     /// Finds the stop after `command`. Returns whether it holds the pairs within all limits.
     pub fn find(&mut self, context: &StepContext<'_>, command: &[f64], rows: &mut ConstrainedStep) -> bool {
         self.clear();
@@ -131,9 +137,12 @@ impl JointMotion for CoupledStop {
     }
 
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]) {
-        if to - from > 1.0 {
-            let bends = off_line.iter_mut().zip(&self.acceleration);
-            bends.for_each(|(off_line, acceleration)| *off_line = acceleration * (to - from).powi(2) / 8.0);
+        if to - from <= 1.0 {
+            return;
+        }
+        for (j, (off_line, acceleration)) in off_line.iter_mut().zip(&self.acceleration).enumerate() {
+            let bend = if from < 0.0 { acceleration.max(self.first_change(j).abs()) } else { *acceleration };
+            *off_line = bend * (to - from).powi(2) / 8.0;
         }
     }
 

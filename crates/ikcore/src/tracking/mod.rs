@@ -20,6 +20,7 @@
 //! | `limited_state` | the motion of an arm under acceleration or jerk limits |
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
+//! | `tip_pace` | limits of the speed and turn speed of tips |
 //! | `progress` | progress towards its target of an arm held by obstacles |
 //! | `settling` | rest of an arm that comes no nearer to targets that stand still |
 //! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and what a step says of it |
@@ -58,6 +59,7 @@ mod step;
 mod step_context;
 mod target_filter;
 mod target_stream;
+mod tip_pace;
 mod tip_paths;
 mod tip_pose;
 mod track;

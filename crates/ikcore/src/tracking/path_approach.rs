@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::session::Session;
 use super::tip_paths::TipPaths;
 use super::track_options::TrackOptions;
+use crate::constraint::TipRates;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
 use crate::message::{Setting, message};
@@ -45,6 +46,7 @@ impl PathApproach {
             ];
             return Err(Error::Contradiction { problem });
         }
+        let tips = TipRates::new(robot, limits.tips(), "track")?;
         let dt = asked.paths[0].dt();
         let mut session = Session::new(robot, start, dt, &without_rates(&limits, options)?)?;
         session.begin(asked.arrival(0))?;
@@ -62,7 +64,10 @@ impl PathApproach {
                 let ticks = i - 1;
                 let met = moving(before, there, after, dt);
                 let time = asked.time(ticks);
-                if let Some(trajectory) = meet(&ArmState::at_rest(start), &met, &limits.narrowest(0.0, time)?, time) {
+                let within = limits.narrowest(0.0, time)?.without_tips();
+                if let Some(trajectory) = meet(&ArmState::at_rest(start), &met, &within, time)
+                    && tips.as_ref().is_none_or(|tips| tips.slowdown(&trajectory, 1.0) <= 1.0)
+                {
                     return Ok(Some(Self { ticks, trajectory }));
                 }
             }

@@ -339,6 +339,11 @@ impl SafetyFilter {
         rest.is_none_or(comes_nearer) && certifies(all, (&motion, motion.end_tick()), context.dt, &mut self.in_the_way)
     }
 
+    /// Whether the command `q` and the stop after it are certified.
+    pub fn allows_command(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        self.allows(context, None, q)
+    }
+
     /// Corrects the command `q` by the rows at the rest configuration after it.
     fn correct(&mut self, context: &StepContext<'_>, q: &mut Point) {
         let stop = context.stop_after(q);

@@ -13,6 +13,7 @@ use super::settling::Settling;
 use super::step::Step;
 use super::step_context::StepContext;
 use super::target_stream::Arrival;
+use super::tip_pace::TipPace;
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
 use super::way_back::{EndOfTick, Next, WayBack};
@@ -43,6 +44,8 @@ pub struct Session {
     surroundings: Surroundings,
     /// Safety filter, present if collisions are to be avoided, something is to be kept or pairs of tips may be held.
     safety: Option<Box<SafetyFilter>>,
+    /// Limits of tips.
+    pace: Option<Box<TipPace>>,
     /// Way back of an arm that comes no nearer to its target; `None` for other rules, and tasks with a region.
     way_back: Option<Box<WayBack>>,
     /// Rest of an arm that comes no nearer; `None` where there is no way back.
@@ -74,6 +77,7 @@ impl Session {
         let kept = kept_by(&options.keeps, robot, &arm)?;
         let filters = !arm.has_one_tip() || space.is_some() || kept.is_some();
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, kept, &arm.limits)?)) } else { None };
+        let pace = TipPace::new(robot, &arm.limits)?;
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
         let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
@@ -81,7 +85,8 @@ impl Session {
             Box::new(WayBack::new(&arm.limits, options.recover))
         });
         let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
-        Ok(Self { arm, rule, running, goals, surroundings, safety, way_back, settling, stopping: false, seed, rng })
+        let stopping = false;
+        Ok(Self { arm, rule, running, goals, surroundings, safety, pace, way_back, settling, stopping, seed, rng })
     }
 
     /// Accepted configuration (n,).
@@ -230,6 +235,7 @@ impl Session {
             found
         };
         let held = if found.interrupted || self.stopping { None } else { self.filter(settled, &mut found) };
+        self.keep_pace(&mut found);
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
@@ -256,6 +262,11 @@ impl Session {
             self.arm.targets.begin_anew();
             self.follow_from_here();
             self.arm.last_value = None;
+        }
+        if self.pace.is_some() && self.arm.tasks.with(&arrival.targets).has_pairs() {
+            let problem =
+                "limits of tips are not kept while one tip is held in the frame of another: leave one of the two out";
+            return Err(Error::Contradiction { problem: problem.into() });
         }
         Ok(())
     }
@@ -404,6 +415,14 @@ impl Session {
             self.note_changed(found);
         }
         held_by
+    }
+
+    /// Changes the command `found` to one that keeps the limits of tips.
+    fn keep_pace(&mut self, found: &mut TickResult) {
+        let Some(pace) = self.pace.as_mut().filter(|_| !found.interrupted && !self.stopping) else { return };
+        if pace.keep(&self.arm.context(), self.safety.as_deref_mut(), &mut found.q) {
+            self.note_changed(found);
+        }
     }
 
     /// Assesses a command that is not the one of the rule.

@@ -7,7 +7,7 @@ use super::target_filter::TargetFilter;
 use crate::constraint::Keep;
 use crate::error::{Error, Result};
 use crate::ik::joint_weights;
-use crate::limits::{LimitAt, Limits, StartSlack};
+use crate::limits::{LimitAt, Limits, StartSlack, TipField};
 use crate::math::JointWeights;
 use crate::message::{Setting, message};
 use crate::obstacle::Surroundings;
@@ -124,6 +124,7 @@ impl TrackOptions {
         let limits = self.limits.clone().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         limits.require_pace_or_consent()?;
+        limits.refuse_tips(&[TipField::Acceleration], "track", "a plan keeps them")?;
         Ok(limits)
     }
 }

@@ -17,6 +17,8 @@ pub enum Unit {
     RadiansAsDegrees,
     /// Millimetres for metres.
     Millimetres,
+    /// Millimetres per second for metres per second.
+    MillimetresPerSecond,
 }
 
 /// Value that looks like another unit.
@@ -59,6 +61,12 @@ impl UnitDoubt {
         Self { thing: thing.into(), value, unit: Unit::Millimetres, against, remedy }
     }
 
+    /// Speed (m/s) that looks like millimetres per second.
+    pub(super) fn millimetres_per_second(thing: impl Into<String>, value: f64, against: &str) -> Self {
+        let remedy = "speeds are in metres per second".into();
+        Self { thing: thing.into(), value, unit: Unit::MillimetresPerSecond, against: against.into(), remedy }
+    }
+
     /// Returns a sentence with the thing, its value, the value in the other unit, and the remedy.
     pub fn message(&self) -> Message {
         let Self { thing, value, unit, against, remedy } = self;
@@ -69,6 +77,9 @@ impl UnitDoubt {
             }
             Unit::RadiansAsDegrees => {
                 ("rad", "radians read as degrees", "rad", format!("{} degrees", number(value.to_degrees())))
+            }
+            Unit::MillimetresPerSecond => {
+                ("m/s", "millimetres per second", "mm/s", format!("{} m/s", number(1e-3 * value)))
             }
             Unit::Millimetres => ("m", "millimetres", "mm", format!("{} m", number(1e-3 * value))),
         };

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::angles::{MOST_DEGREES, are_degrees};
 use super::doubt::{Unit, UnitDoubt};
 use super::lengths::reach_of_links;
-use crate::limits::{Field, Limits};
+use crate::limits::{Field, Limits, TipField};
 use crate::message::{Setting, message};
 use crate::robot::{Joint, Robot};
 
@@ -14,6 +14,10 @@ const WIDE: [f64; 2] = [15.0, 30.0];
 
 /// Least velocity of joints that looks like degrees per second (rad/s).
 const FAST: f64 = 60.0;
+
+/// Speed of a tip that looks like millimetres per second (m/s), and turn speed that looks like degrees per second (rad/s).
+const FAST_TIP: f64 = 20.0;
+const FAST_TURN: f64 = 45.0;
 
 /// Slide (m) that looks like millimetres, with the multiple of the reach of the links.
 const LONG_SLIDE: [f64; 2] = [150.0, 30.0];
@@ -31,6 +35,23 @@ pub fn of_limits(robot: &Robot) -> Vec<UnitDoubt> {
 
 /// Doubts the limits of a call as far as they differ from those of the robot; limits that vary count as at the start.
 pub fn of_limits_of_call(robot: &Robot, limits: &Limits) -> Vec<UnitDoubt> {
+    let mut doubts = of_joints_of_call(robot, limits);
+    doubts.extend(of_tips(limits));
+    doubts
+}
+
+/// Doubts limits of tips.
+fn of_tips(limits: &Limits) -> impl Iterator<Item = UnitDoubt> {
+    let largest =
+        |field: TipField| limits.of_tips(field).iter().copied().filter(|limit| limit.is_finite()).fold(0.0, f64::max);
+    let [speed, turn] = [TipField::Speed, TipField::TurnSpeed].map(largest);
+    let speed =
+        (speed >= FAST_TIP).then(|| UnitDoubt::millimetres_per_second("tip speed limit", speed, "no arm is as fast"));
+    let turn = (turn >= FAST_TURN).then(|| UnitDoubt::degrees_per_second("tip turn speed limit", turn));
+    speed.into_iter().chain(turn)
+}
+
+fn of_joints_of_call(robot: &Robot, limits: &Limits) -> Vec<UnitDoubt> {
     let value = |field: Field, j: usize| limits.field(field).map_or(f64::INFINITY, |profiles| profiles[j].at(0.0));
     let range = |j: usize| [value(Field::Lower, j), value(Field::Upper, j)];
     if !(0..robot.dof()).any(|j| is_large(range(j), value(Field::Velocity, j))) {

@@ -1,15 +1,17 @@
 //! `Limits`: the given fields, and the limits in force.
 
 use ikcore::Error;
-use ikcore::limits::{Field, Limits};
+use ikcore::limits::{Field, Limits, TipField};
 use ikcore::robot::Robot;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::given::GivenLimit;
+use super::of_tips::{GivenTips, keyword};
 use super::per_joint::PerJoint;
 use super::sampling::Sampling;
 use crate::error::{limit_error, raise};
+use crate::hash::content_hash;
 use crate::options::NewArguments;
 use crate::traversal::traversed;
 
@@ -19,30 +21,53 @@ use crate::traversal::traversed;
 ///     lower, upper: position limits (rad, m).
 ///     velocity: velocity limits (rad/s, m/s).
 ///     acceleration, jerk: acceleration limits (rad/s^2, m/s^2) and jerk limits (rad/s^3, m/s^3).
+///     tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
+///         origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
+///         limit. Planned motions keep them at every instant, not only at samples.
 ///
-/// Each is a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
+/// Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
 /// are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
 /// no limit is ignored.
+///
+/// For example, a cobot whose tool moves at 0.25 m/s at most:
+///
+///     >>> limits = bik.Limits(velocity=2.0, acceleration=8.0, tip_speed=0.25)
+///     >>> plan = bik.plan_point_to_point(bik.Robot.named("ur5e"), start_q=[0, -1.5, 1.5, 0, 0, 0], end_q=[1, -1, 1, 0, 0, 0], limits=limits)
+///     >>> plan.success
+///     True
+///
+/// Raises:
+///     LimitError: a negative limit; a limit of a tip that is not positive.
+///     InvalidInputError: NaN, no number, or a dict that is not by tip.
 #[pyclass(name = "Limits", module = "beetle_ik", frozen)]
 pub struct PyLimits {
     /// Given values, in the order of [`FIELDS`].
     given: [Option<GivenLimit>; 5],
+    /// Given limits of tips, in the order of [`TipField::ALL`].
+    tips: [Option<GivenTips>; 3],
 }
 
 traversed!(PyLimits: given);
+
+const NO_TIPS: [Option<GivenTips>; 3] = [const { None }; 3];
 
 const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::Acceleration, Field::Jerk];
 
 #[pymethods]
 impl PyLimits {
     #[new]
-    #[pyo3(signature = (*, lower=None, upper=None, velocity=None, acceleration=None, jerk=None))]
+    #[pyo3(signature = (*, lower=None, upper=None, velocity=None, acceleration=None, jerk=None, tip_speed=None,
+                        tip_acceleration=None, tip_turn_speed=None))]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         lower: Option<&Bound<'_, PyAny>>,
         upper: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
         acceleration: Option<&Bound<'_, PyAny>>,
         jerk: Option<&Bound<'_, PyAny>>,
+        tip_speed: Option<&Bound<'_, PyAny>>,
+        tip_acceleration: Option<&Bound<'_, PyAny>>,
+        tip_turn_speed: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut given = [const { None }; 5];
         for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
@@ -55,7 +80,12 @@ impl PyLimits {
                 return Err(limit_error(format!("{field} limit{joint} is {value}: a limit cannot be negative")));
             }
         }
-        Ok(Self { given })
+        let mut tips = [const { None }; 3];
+        let of_tips = [tip_speed, tip_acceleration, tip_turn_speed];
+        for ((slot, field), value) in tips.iter_mut().zip(TipField::ALL).zip(of_tips) {
+            *slot = value.map(|value| GivenTips::read(field, value)).transpose()?;
+        }
+        Ok(Self { given, tips })
     }
 
     /// Lower position limits (rad, m), as given.
@@ -88,6 +118,24 @@ impl PyLimits {
         self.show(py, Field::Jerk)
     }
 
+    /// Limits of the speed of tips (m/s), as given.
+    #[getter]
+    fn tip_speed<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show_tips(py, TipField::Speed)
+    }
+
+    /// Limits of the acceleration of tips (m/s^2), as given.
+    #[getter]
+    fn tip_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show_tips(py, TipField::Acceleration)
+    }
+
+    /// Limits of how fast tips turn (rad/s), as given.
+    #[getter]
+    fn tip_turn_speed<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.show_tips(py, TipField::TurnSpeed)
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let mut shown = vec![];
         for (given, field) in self.given.iter().zip(FIELDS) {
@@ -95,11 +143,17 @@ impl PyLimits {
                 shown.push(format!("{field}={}", given.repr(py)));
             }
         }
+        for (given, field) in self.tips() {
+            shown.push(format!("{}={}", keyword(field), given.repr()));
+        }
         Ok(format!("Limits({})", shown.join(", ")))
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
         let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        if self.tips != other.get().tips {
+            return Ok(false);
+        }
         for pair in self.given.iter().zip(&other.get().given) {
             let equal = match pair {
                 (Some(one), Some(another)) => one.equals(other.py(), another)?,
@@ -114,7 +168,9 @@ impl PyLimits {
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
         let fields = self.given.iter().map(|given| given.as_ref().map(|given| given.hash(py)).transpose());
-        PyTuple::new(py, fields.collect::<PyResult<Vec<_>>>()?)?.hash()
+        let mut hashes = fields.collect::<PyResult<Vec<_>>>()?;
+        hashes.extend(self.tips.iter().map(|given| given.as_ref().map(|given| content_hash(given) as isize)));
+        PyTuple::new(py, hashes)?.hash()
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
@@ -123,6 +179,9 @@ impl PyLimits {
             if let Some(given) = given {
                 options.set_item(field.to_string(), given.show(py)?)?;
             }
+        }
+        for (given, field) in self.tips() {
+            options.set_item(keyword(field), given.show(py)?)?;
         }
         Ok((PyTuple::empty(py), options))
     }
@@ -140,6 +199,7 @@ impl PyLimits {
                 None,
                 None,
             ],
+            tips: NO_TIPS,
         }
     }
 
@@ -157,13 +217,14 @@ impl PyLimits {
 
     /// Returns position limits alone.
     pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
-        Self { given: [numbers(lower), numbers(upper), None, None, None] }
+        Self { given: [numbers(lower), numbers(upper), None, None, None], tips: NO_TIPS }
     }
 
     /// Returns infinite limits for `n` joints.
     pub(super) fn none(n: usize) -> Self {
         let free = |limit: f64| numbers(vec![limit; n]);
-        Self { given: [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None] }
+        let given = [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None];
+        Self { given, tips: NO_TIPS }
     }
 
     /// Returns the limits in force for `robot`: these, with missing fields from the robot.
@@ -179,7 +240,7 @@ impl PyLimits {
                 *slot = Some(replacement.clone_ref(py));
             }
         }
-        Self { given }
+        Self { given, tips: self.tips.clone() }
     }
 
     /// Refuses callables of t, for motions without a known end.
@@ -200,12 +261,14 @@ impl PyLimits {
 
     /// Converts the limits for the core; samples functions of time.
     pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
-        self.applied_to(py, Limits::of(robot), robot.dof(), sampling)
+        let limits = self.applied_to(py, Limits::of(robot), robot.dof(), sampling)?;
+        self.with_tips(limits, Some(robot))
     }
 
     /// Converts the limits for joints without a robot; missing fields are unlimited.
     pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
-        self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())
+        let limits = self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())?;
+        self.with_tips(limits, None)
     }
 
     pub(super) fn applied_to(
@@ -221,6 +284,23 @@ impl PyLimits {
             }
         }
         Ok(limits)
+    }
+
+    /// Adds the limits of tips.
+    pub(super) fn with_tips(&self, mut limits: Limits, robot: Option<&Robot>) -> PyResult<Limits> {
+        for (given, field) in self.tips() {
+            limits = limits.with_tip_limit(field, given.values(robot)?).map_err(raise)?;
+        }
+        Ok(limits)
+    }
+
+    /// The given limits of tips.
+    fn tips(&self) -> impl Iterator<Item = (&GivenTips, TipField)> {
+        self.tips.iter().zip(TipField::ALL).filter_map(|(given, field)| Some((given.as_ref()?, field)))
+    }
+
+    fn show_tips<'py>(&self, py: Python<'py>, field: TipField) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.tips[field as usize].as_ref().map(|given| given.show(py)).transpose()
     }
 
     fn show<'py>(&self, py: Python<'py>, field: Field) -> PyResult<Option<Bound<'py, PyAny>>> {

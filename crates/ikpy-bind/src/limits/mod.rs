@@ -3,6 +3,7 @@
 mod given;
 mod joint_limits;
 mod of_call;
+mod of_tips;
 mod per_joint;
 mod sampling;
 mod sinusoid;

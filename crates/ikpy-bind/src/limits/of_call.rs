@@ -49,7 +49,7 @@ pub fn limits_without_robot(
     match limits {
         None => Ok((Py::new(py, none)?, Limits::none_for(n))),
         Some(limits) => {
-            let resolved = limits.applied_to(py, Limits::none_for(n), n, sampling)?;
+            let resolved = limits.with_tips(limits.applied_to(py, Limits::none_for(n), n, sampling)?, None)?;
             Ok((Py::new(py, limits.else_of(py, none))?, resolved))
         }
     }

@@ -10,6 +10,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use super::move_report::PyMoveReport;
 use super::violation::PyViolation;
 use crate::convert::{row, table};
 use crate::error::raise;
@@ -155,6 +156,12 @@ impl PyPlan {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
+    /// How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans.
+    #[getter]
+    fn moves(&self) -> Vec<PyMoveReport> {
+        self.core.moves.iter().cloned().map(PyMoveReport).collect()
+    }
+
     /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
     /// the plan keeps on the way, which is certified again.
     ///
@@ -166,7 +173,7 @@ impl PyPlan {
     ///
     /// Raises:
     ///     TypeError: limits that are no `Limits`.
-    ///     InfeasibleError: a plan with violations, a path outside the position limits, jerk limits on a motion whose
+    ///     InfeasibleError: a plan with violations, one of `plan_moves`, a path outside the position limits, jerk limits on a motion whose
     ///         acceleration jumps, or a margin, or what is to be kept on the way, that the motion timed for jerk limits does not keep.
     ///     UnsupportedLimit: limits that vary in time.
     fn retime(&self, py: Python<'_>, limits: &Bound<'_, PyAny>) -> PyResult<Self> {

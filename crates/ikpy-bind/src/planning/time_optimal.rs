@@ -1,5 +1,6 @@
 //! `time_optimal`.
 
+use ikcore::limits::Limits;
 use ikcore::planning::{
     ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest, time_optimal_within,
 };
@@ -8,9 +9,12 @@ use pyo3::prelude::*;
 
 use crate::convert::{array, optional_count, shape_text, vector};
 use crate::error::{invalid, raise};
-use crate::limits::{PerJoint, PyLimits};
+use crate::limits::{PerJoint, PyLimits, Sampling, limits_of_call};
 use crate::monitor::long_call;
+use crate::robot::PyRobot;
 use crate::trajectory::{PyTrajectory, names};
+
+const METHOD: &str = "time_optimal";
 
 /// Computes the time-optimal motion along a given joint path: the shape is kept, only the timing is optimised.
 ///
@@ -34,6 +38,8 @@ use crate::trajectory::{PyTrajectory, names};
 ///     tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
 ///         parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
 ///         is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+///     robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
+///         `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 ///
 /// Equal consecutive rows, as a recording has at rest, are one waypoint.
 ///
@@ -44,7 +50,8 @@ use crate::trajectory::{PyTrajectory, names};
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
 ///     InfeasibleError: the path leaves the position limits, needs motion of a locked joint, or the end speeds are too high.
-///     UnsupportedLimit: limits that vary in time, no acceleration limit, or jerk limits on a polyline without `tolerance`.
+///     UnsupportedLimit: limits that vary in time, no acceleration limit, jerk limits on a polyline without `tolerance`, limits of tips
+///         without `robot`, or limits of a tip on a floating base.
 ///
 /// For example:
 ///
@@ -54,7 +61,7 @@ use crate::trajectory::{PyTrajectory, names};
 ///     1.8
 #[pyfunction]
 #[pyo3(signature = (waypoints_q, limits, *, knots=None, spline="natural", blend=None, gridpoints=None, start_speed=0.0,
-                    end_speed=0.0, joint_names=None, tolerance=None))]
+                    end_speed=0.0, joint_names=None, tolerance=None, robot=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn time_optimal(
     py: Python<'_>,
@@ -68,18 +75,34 @@ pub fn time_optimal(
     end_speed: f64,
     #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     tolerance: Option<&Bound<'_, PyAny>>,
+    robot: Option<&PyRobot>,
 ) -> PyResult<PyTrajectory> {
     let waypoints = array("waypoints_q", waypoints_q)?;
     let &[_, n @ (1..)] = waypoints.shape() else {
         let got = shape_text(waypoints.shape());
         return Err(invalid(format!("waypoints_q: expected shape (k, n), a row for each waypoint, got {got}")));
     };
-    let joints = names(joint_names, n)?;
-    let limits = limits.for_joints(py, &joints)?;
+    let (joints, limits) = match robot {
+        None => {
+            let joints = names(joint_names, n)?;
+            let limits = limits.for_joints(py, &joints)?;
+            (joints, ConstantLimits::new(&limits, METHOD).map_err(raise)?)
+        }
+        Some(_) if joint_names.is_some() => {
+            return Err(invalid("robot has joint_names of its own: leave one out".into()));
+        }
+        Some(robot) => {
+            let core = &robot.core;
+            core.check("waypoints_q", &waypoints.as_slice()?[..n.min(waypoints.as_slice()?.len())]).map_err(raise)?;
+            let (_, resolved) = limits_of_call(py, Some(limits), robot, &Sampling::once())?;
+            let limits = resolved.unwrap_or_else(|| Limits::of(core));
+            let joints = core.joints().iter().map(|joint| joint.name.clone()).collect();
+            (joints, ConstantLimits::of_path(core, &limits, METHOD).map_err(raise)?)
+        }
+    };
     let knots = knots.map(|knots| vector("knots", knots)).transpose()?;
     let waypoints = waypoints.as_slice()?;
     let options = TimingOptions { gridpoints: optional_count("gridpoints", gridpoints)?, start_speed, end_speed };
-    let limits = ConstantLimits::new(&limits, "time_optimal").map_err(raise)?;
     let path: Box<dyn FnOnce() -> ikcore::Result<JointPath> + Send> = if spline == "polyline" {
         if knots.is_some() {
             return Err(invalid(

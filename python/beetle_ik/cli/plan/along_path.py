@@ -22,6 +22,7 @@ from ..options import (
     Seed,
     StartQ,
     TipLink,
+    TipSpeed,
     Trusted,
     UrdfFile,
     Velocity,
@@ -64,6 +65,7 @@ def along_path(
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
+    tip_speed: TipSpeed = None,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -78,7 +80,7 @@ def along_path(
     """Plan a motion that moves the tip along a path."""
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     path = _path(arm, curve, points)
-    chosen = _method(method, solver) | options(velocity, acceleration, jerk, max_evaluations)
+    chosen = _method(method, solver) | options(velocity, acceleration, jerk, tip_speed, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_along_path(

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, Limits, Plan, Stop, plot
+from ... import InvalidInputError, Limits, MoveReport, Plan, Stop, plot
 from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
@@ -38,7 +38,11 @@ Solver = Annotated[SearchName | None, typer.Option(help="Solver of the search; d
 
 
 def options(
-    velocity: str | None, acceleration: str | None, jerk: str | None, max_evaluations: int | None
+    velocity: str | None,
+    acceleration: str | None,
+    jerk: str | None,
+    tip_speed: float | None,
+    max_evaluations: int | None,
 ) -> dict[str, Any]:
     """Returns the keywords common to both planners."""
     chosen: dict[str, Any] = {
@@ -46,6 +50,7 @@ def options(
             velocity=limit("--velocity-limit", velocity),
             acceleration=limit("--acceleration-limit", acceleration),
             jerk=limit("--jerk-limit", jerk),
+            tip_speed=tip_speed,
         ),
     }
     if max_evaluations is not None:
@@ -93,11 +98,17 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
         "clearance": plan.clearance,
         "tilt": plan.kept[0][1][-1] if plan.kept else math.nan,
         "violations": [str(violation) for violation in plan.violations],
+        "moves": [_move(move) for move in plan.moves],
         "largest_velocity": plan.trajectory.max_velocity(),
         "largest_acceleration": plan.trajectory.max_acceleration(),
         "evaluations": plan.evaluations,
         "elapsed": plan.elapsed,
     }
+
+
+def _move(move: MoveReport) -> dict[str, Any]:
+    bound_by = [{key: getattr(bound, key) for key in ("limit", "of", "start", "end")} for bound in move.bound_by]
+    return {"name": move.name, "start": move.start, "end": move.end, "speed": move.speed, "bound_by": bound_by}
 
 
 def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
@@ -108,6 +119,9 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
         rows.append(("smallest clearance [m]", f"{plan.clearance:.3g}"))
     if not math.isnan(summary["tilt"]):
         rows.append(("largest tilt [rad]", f"{summary['tilt']:.4g}"))
+    for i, move in enumerate(plan.moves):
+        named = f"move {i}" if move.name is None else f"move {i} '{move.name}'"
+        rows.append((named, f"{move.start:.3f} to {move.end:.3f} s, up to {move.speed:.4g} m/s"))
     rows += [("violation", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
     print_pairs(f"{plan.robot.name}: {summary['message']}", rows)

@@ -20,6 +20,7 @@ from ..options import (
     Seed,
     Tilt,
     TipLink,
+    TipSpeed,
     Trusted,
     Up,
     UrdfFile,
@@ -87,6 +88,7 @@ def point_to_point(
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     jerk: Jerk = None,
+    tip_speed: TipSpeed = None,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -101,7 +103,7 @@ def point_to_point(
     """Plan a motion between two places of the tip, or two configurations, from rest to rest."""
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
-    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, max_evaluations)
+    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, tip_speed, max_evaluations)
     keep = kept_upright(arm, tilt, up)
     obstacles = None if scene is None else Scene.load(scene)
     report(

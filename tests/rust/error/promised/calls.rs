@@ -65,6 +65,9 @@ pub fn calls() -> Vec<Row> {
         "plan_batch" OutOfRange: plans(&[0.0; 2], 0), "threads must be from 1 to 1024, got 0";
         "plan_point_to_point" Unreachable: between(&[far()], &[0.0; 2]), "end cannot be reached: the nearest configuration found stays 7.000 m away";
         "plan_point_to_point" NoUsableEnd: between(&[far(), far()], &[0.0; 2]), "none of the 2 ends can be reached: end[0]: the nearest configuration found stays 7.000 m away; end[1]: the nearest configuration found stays 7.000 m away";
+        "plan_moves" InvalidMove: program([0.0; 3]), "the program: it has no moves: give at least one";
+        "plan_moves" Unreachable: program([-0.9, 0.0, 0.0]), "move 0 'out' cannot be reached: 0.3521 m along it, no solution (no configuration has this pose): move or turn the target into reach, or move the base";
+        "plan_moves" NotFound: program([0.3, 0.0, 0.0]), "a motion along move 0 'out' was not found: 0.05000 m along it, joint 'elbow_joint' would have to go to 2.326, beyond its limits [-6.283, 1.900]; begin with a joint move to a pose, so that the planner can choose the configuration";
         "plan_along_path" Unreachable: along(&[[9.0, 0.0, 0.0], [9.0, 1.0, 0.0]]), "points 0 to 1 of the path cannot be reached: the nearest configurations found within the limits stay up to 7.055 m away";
         "Plan::retime" Infeasible: between(&[at(&[0.5; 2])], &[0.0; 2]).unwrap().retime(&two(), Some(&rated().replace(Field::Upper, vec![Profile::Constant(0.2)]).unwrap())), "infeasible: the path of the plan leaves the limits: highest position of joint 'joint_1' is 0.5000 rad, allowed 0.2000 rad";
         "best_posture" NotFinite: best_posture(&robot("planar5"), &[NAN, 0.0, 0.0], &PostureOptions::default(), &mut Unattended), "target must be finite, but coordinate x is NaN";

@@ -18,6 +18,7 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         let limits = ConstantLimits::new(&limits, "time_optimal").unwrap();
         time_optimal_within(&path, tolerance, &limits, &TimingOptions::default())
     };
+    let of_path = |limits: &Limits| ConstantLimits::of_path(&Robot::planar(&[1.0; 2]).unwrap(), limits, "time_optimal");
     let motion = || Trajectory::from_samples(names(1), &[0.0, 1.0], &[0.0, 1.0], None, None).unwrap();
     promises! {
         "Circle::new" OutOfRange: Circle::new(plane(), 0.0, 1.0), "diameter must be positive and finite, got 0";
@@ -72,6 +73,11 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "ConstantLimits::new" UnsupportedLimit: ConstantLimits::new(&varying(Field::Acceleration), "time_optimal"), "time_optimal cannot honour time-varying acceleration limits: when a point of the path is passed is what it looks for; give numbers";
         "ConstantLimits::new" NegativeLimit: ConstantLimits::new(&constant(Field::Acceleration, -1.0), "time_optimal"), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
         "ConstantLimits::new" EmptyRange: ConstantLimits::new(&crossed(), "time_optimal"), "joint '0': lower limit 1 is above upper limit 0";
+        "ConstantLimits::of_path" UnsupportedLimit: of_path(&varying(Field::Acceleration)), "time_optimal cannot honour time-varying acceleration limits: give numbers";
+        "ConstantLimits::of_path" OutOfRange: of_path(&constant(Field::Velocity, 0.0)), "velocity limit of joints '0', '1' must be positive, got 0";
+        "ConstantLimits::of_path" EmptyRange: of_path(&crossed()), "joint '0': lower limit 1 is above upper limit 0";
+        "ConstantLimits::of_path" NegativeLimit: of_path(&constant(Field::Acceleration, -1.0)), "acceleration limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
+        "ConstantLimits::of_path" WrongLength: of_path(&Limits::none_for(3)), "limits for robot 'planar2': expected 2 joints, got 3";
         "Trajectory::new" InvalidTrajectory: Trajectory::new(vec![], vec![0.0, 1.0], vec![]), "trajectory: it needs at least 1 joint";
         "Trajectory::new" WrongLength: Trajectory::new(names(1), vec![0.0, 1.0], vec![]), "trajectory coefficients: expected 1 polynomials (1 segments of 1 joints), got 0";
         "Trajectory::new" NotFinite: Trajectory::new(names(1), vec![0.0, 1.0], vec![[NAN; 7]]), "trajectory coefficients must be finite, but power 0 of joint 'joint_1' in segment 0 is NaN";

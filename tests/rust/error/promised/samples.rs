@@ -90,6 +90,19 @@ pub fn along(points: &[[f64; 3]]) -> Result<Plan> {
     plan_along_path(&two(), &path, &AlongPathOptions { limits: Some(rated()), ..Default::default() }, &mut Unattended)
 }
 
+/// A program of one line of a UR5e by this way (m), from a posture in front of it.
+pub fn program(way: [f64; 3]) -> Result<Plan> {
+    let (arm, start) = (robot("ur5e"), [0.0, -1.5, 1.8, -1.9, -1.57, 0.3]);
+    let tip = arm.fk(&start)?;
+    let goal = pose::from_parts((tip.translation.vector + Vector3::from(way)).into(), *tip.rotation.matrix());
+    let limits = Limits::of(&arm).replace(Field::Acceleration, vec![Profile::Constant(5.0); 6])?;
+    let narrow = limits.replace(Field::Upper, vec![Profile::Constant(1.9); 6])?;
+    let options = MovesOptions { limits: Some(narrow), ..MovesOptions::default() };
+    let line = Move { name: Some("out".into()), ..Move::new(MoveKind::Line { pose: goal, speed: None }) };
+    let moves = if way == [0.0; 3] { vec![] } else { vec![line] };
+    plan_moves(&arm, &moves, &start, &options, &mut Unattended)
+}
+
 pub fn session() -> Session {
     Session::new(&two(), &[0.5, 0.5], 0.1, &TrackOptions { limits: jumping(&two()), ..Default::default() }).unwrap()
 }

@@ -90,7 +90,7 @@ impl<'a> PathProblem<'a> {
         options: &'a AlongPathOptions,
     ) -> Result<Self> {
         let stopwatch = Stopwatch::start();
-        let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
+        let limits = ConstantLimits::for_robot(keeps.robot, options.limits.as_ref(), METHOD)?;
         limits.require_accelerations(METHOD)?;
         let accuracy = options.accuracy.unwrap_or_else(|| tip_path.default_accuracy());
         require_positive("accuracy", accuracy)?;

@@ -2,7 +2,7 @@
 
 use nalgebra::UnitQuaternion;
 
-use super::tip_curve::TipPath;
+use super::tip_curve::{PathPlace, TipPath};
 
 /// Rows that replace a corner.
 const ROWS: usize = 32;
@@ -52,9 +52,6 @@ impl TipPath {
     }
 }
 
-/// A position, and a rotation if the path has orientations.
-pub(super) type Place = ([f64; 3], Option<UnitQuaternion<f64>>);
-
 /// A rounded corner: a quintic from `width` before its center to `width` after it.
 struct Corner {
     center: f64,
@@ -90,7 +87,7 @@ impl Corner {
         (0..=ROWS).map(at_row).fold(0.0, f64::max)
     }
 
-    fn place(&self, path: &TipPath, at: f64) -> Place {
+    fn place(&self, path: &TipPath, at: f64) -> PathPlace {
         let ends = [self.center - self.width, self.center + self.width];
         let step = STEP * self.width;
         let part = (at - ends[0]) / (2.0 * self.width);

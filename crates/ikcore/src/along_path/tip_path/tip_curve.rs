@@ -4,7 +4,6 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::path_target::PathTarget;
 use super::repetition::refuse_repetition;
-use super::rounded::Place;
 use super::segment_geometry::{distance_to_segment, turn};
 use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
@@ -38,6 +37,9 @@ pub struct TipPath {
     /// Path parameters of those points.
     point_fractions: Vec<f64>,
 }
+
+/// A position (m), and a rotation if the path has orientations.
+pub(super) type PathPlace = ([f64; 3], Option<UnitQuaternion<f64>>);
 
 /// Smallest advance of a path that is no pause, as a fraction of its length.
 pub(super) const PAUSE: f64 = 1e-9;
@@ -270,7 +272,7 @@ impl TipPath {
     }
 
     /// The same curve without corners, with rows at these path parameters: at the `place` where there is one.
-    pub(super) fn resampled(&self, fractions: Vec<f64>, place: impl Fn(f64) -> Option<Place>) -> Self {
+    pub(super) fn resampled(&self, fractions: Vec<f64>, place: impl Fn(f64) -> Option<PathPlace>) -> Self {
         let place = |at: &f64| place(*at).unwrap_or_else(|| (self.position(*at), self.rotation(*at)));
         let (positions, rotations): (Vec<_>, Vec<_>) = fractions.iter().map(place).unzip();
         let time = |times: &Vec<f64>, at: f64| {

@@ -3,7 +3,7 @@
 //! Each step needs a positive definite matrix with a few diagonals. The limit of the jerk is a linear form below the convex 1 / sqrt(y);
 //! the part of the second derivative that its curvature would take away is left out. All iterates keep all limits.
 
-use super::constraints::{Constraints, Point, Row};
+use super::constraints::{Constraints, JointRow, RatePoint, TipRow};
 use super::rate_spline::RateSpline;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
@@ -11,6 +11,11 @@ use crate::math::banded::{self, Band, SIDE_DIAGONALS};
 
 /// Barriers: the gap that they leave to the fastest motion, as a fraction of its duration.
 const GAPS: [f64; 5] = [0.5, 0.1, 1.5e-2, 1e-3, 2e-5];
+/// Those of a search that begins near the fastest rate.
+const LATER_GAPS: [f64; 3] = [1.5e-2, 1e-3, 2e-5];
+/// Factor by which such a start is slowed down until it keeps the constraints, and how often at most.
+const SLOWED: f64 = 0.97;
+const SLOWINGS: i32 = 30;
 /// Newton steps for each barrier at most.
 const STEPS: usize = 100;
 /// A step that would lower the function by less than this fraction of the gap ends the search.
@@ -22,15 +27,40 @@ const SHORTEST: f64 = 1e-6;
 /// Part of the constant rate that reaches a limit, at the start.
 const START: f64 = 0.9;
 
-/// Changes `rate` to the fastest one within the constraints.
+/// Changes `rate` to the fastest one within the constraints, from a constant one.
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`].
-pub(super) fn fastest_rate(rate: &mut RateSpline, mut constraints: Constraints) -> Result<()> {
+pub(super) fn fastest_rate(rate: &mut RateSpline, constraints: &mut Constraints) -> Result<()> {
     let unit = constraints.normalize();
-    let mut search = Search::new(&constraints, rate.coefficients.len());
-    for gap in GAPS {
-        search.center(gap)?;
+    let start = vec![START; rate.coefficients.len()];
+    improve(rate, unit, start, constraints, &GAPS)?;
+    constraints.restore(unit);
+    Ok(())
+}
+
+/// Changes `rate` to the fastest one within the constraints, from itself, slowed down until it keeps them.
+///
+/// # Errors
+/// [`crate::Error::Interrupted`].
+pub(super) fn faster_rate(rate: &mut RateSpline, constraints: &mut Constraints) -> Result<()> {
+    let unit = constraints.normalize();
+    let slowed =
+        |part: f64| rate.coefficients.iter().map(|coefficient| part * coefficient / unit).collect::<Vec<f64>>();
+    let starts = (1..=SLOWINGS).map(|i| slowed(SLOWED.powi(i)));
+    let within = |start: &Vec<f64>| Search::new(constraints, start.clone()).value(start, 0.0).is_some();
+    match starts.into_iter().find(within) {
+        Some(start) => improve(rate, unit, start, constraints, &LATER_GAPS)?,
+        None => improve(rate, unit, vec![START; rate.coefficients.len()], constraints, &GAPS)?,
+    }
+    constraints.restore(unit);
+    Ok(())
+}
+
+fn improve(rate: &mut RateSpline, unit: f64, start: Vec<f64>, constraints: &Constraints, gaps: &[f64]) -> Result<()> {
+    let mut search = Search::new(constraints, start);
+    for gap in gaps {
+        search.center(*gap)?;
     }
     for (coefficient, found) in rate.coefficients.iter_mut().zip(&search.at) {
         *coefficient = unit * found;
@@ -47,14 +77,15 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(constraints: &'a Constraints, n: usize) -> Self {
+    fn new(constraints: &'a Constraints, at: Vec<f64>) -> Self {
+        let n = at.len();
         let band = vec![[0.0; SIDE_DIAGONALS + 1]; n];
-        Self { constraints, at: vec![START; n], tried: vec![0.0; n], gradient: vec![0.0; n], band }
+        Self { constraints, at, tried: vec![0.0; n], gradient: vec![0.0; n], band }
     }
 
     /// Minimises the duration and the barrier that leaves this gap.
     fn center(&mut self, gap: f64) -> Result<()> {
-        let duration = |point: &Point| point.share / combined(point, &self.at)[0].sqrt();
+        let duration = |point: &RatePoint| point.share / combined(point, &self.at)[0].sqrt();
         let gap = gap * self.constraints.points.iter().map(duration).sum::<f64>();
         let barrier = gap / self.constraints.count() as f64;
         for _ in 0..STEPS {
@@ -89,7 +120,7 @@ impl<'a> Search<'a> {
     /// The duration with the barrier; `None` outside of the constraints.
     fn value(&self, coefficients: &[f64], barrier: f64) -> Option<f64> {
         let (mut duration, mut logarithms) = (0.0, 0.0);
-        for (point, rows) in self.constraints.all() {
+        for (point, rows, tips) in self.constraints.all() {
             let y = combined(point, coefficients);
             let room = 1.0 - point.slowness * y[0];
             if !(y[0] > 0.0 && room > 0.0) {
@@ -98,6 +129,14 @@ impl<'a> Search<'a> {
             let slow = 1.0 / y[0].sqrt();
             duration += point.share * slow;
             logarithms += room.ln();
+            for tip in tips {
+                let used = tip.used(&y);
+                let room = 1.0 - dot(&used, &used);
+                if !(room > 0.0) {
+                    return None;
+                }
+                logarithms += room.ln();
+            }
             for row in rows {
                 let [a, b] = row.used(&y);
                 let [of_acceleration, of_jerk] = [1.0 - a * a, slow * slow - b * b];
@@ -115,8 +154,10 @@ impl<'a> Search<'a> {
         let value = self.value(&self.at, barrier)?;
         self.gradient.fill(0.0);
         self.band.fill([0.0; SIDE_DIAGONALS + 1]);
-        for (point, rows) in self.constraints.all() {
-            let local = Local::of(point, rows, &combined(point, &self.at), barrier);
+        for (point, rows, tips) in self.constraints.all() {
+            let y = combined(point, &self.at);
+            let mut local = Local::of(point, rows, &y, barrier);
+            tips.iter().for_each(|tip| local.add_tip(barrier, tip, &y));
             for i in 0..3 {
                 let weights = |coefficient: usize| [0, 1, 2].map(|order| point.weights[order][coefficient]);
                 let of_i = weights(i);
@@ -139,7 +180,7 @@ struct Local {
 }
 
 impl Local {
-    fn of(point: &Point, rows: &[Row], y: &[f64; 3], barrier: f64) -> Self {
+    fn of(point: &RatePoint, rows: &[JointRow], y: &[f64; 3], barrier: f64) -> Self {
         let slow = 1.0 / y[0].sqrt();
         // The derivative of 1 / sqrt(y).
         let slower = -0.5 * slow / y[0];
@@ -164,6 +205,17 @@ impl Local {
         self.add_pair(barrier, [-inverse, inverse * inverse], slope);
     }
 
+    /// Adds the acceleration limit of a tip.
+    fn add_tip(&mut self, barrier: f64, tip: &TipRow, y: &[f64; 3]) {
+        let used = tip.used(y);
+        let inverse = 1.0 / (1.0 - dot(&used, &used));
+        self.add(barrier, inverse, [-2.0 * dot(&used, &tip.of_y), -2.0 * dot(&used, &tip.of_slope), 0.0]);
+        let bent = 2.0 * barrier * inverse;
+        self.curvature[0] += bent * dot(&tip.of_y, &tip.of_y);
+        self.curvature[1] += bent * dot(&tip.of_y, &tip.of_slope);
+        self.curvature[3] += bent * dot(&tip.of_slope, &tip.of_slope);
+    }
+
     fn add_pair(&mut self, barrier: f64, [first, second]: [f64; 2], [x, y, z]: [f64; 3]) {
         let [first, second] = [barrier * first, barrier * second];
         let products = [x * x, x * y, x * z, y * y, y * z, z * z];
@@ -177,18 +229,9 @@ impl Local {
     }
 }
 
-impl Row {
-    /// The linear forms of the acceleration and of the jerk.
-    #[inline]
-    fn used(&self, y: &[f64; 3]) -> [f64; 2] {
-        let [a0, a1] = self.acceleration;
-        [a0 * y[0] + a1 * y[1], dot(&self.jerk, y)]
-    }
-}
-
 /// y, y' and y'' at a point.
 #[inline]
-fn combined(point: &Point, coefficients: &[f64]) -> [f64; 3] {
+fn combined(point: &RatePoint, coefficients: &[f64]) -> [f64; 3] {
     let of = &coefficients[point.interval..point.interval + 3];
     point.weights.map(|weights| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2])
 }

@@ -4,6 +4,7 @@
 //! positive everywhere.
 
 use super::super::joint_path::JointPath;
+use crate::trajectory::{Coefficients, polynomial};
 
 /// Bisections after which a root is known to its last digits.
 const BISECTIONS: usize = 60;
@@ -69,12 +70,23 @@ impl<'a> Clock<'a> {
 }
 
 impl PathPoint<'_> {
+    /// 1 / (du/dt)^2 where the path has its largest speed; zero without one.
+    pub(super) fn slowness(&self) -> f64 {
+        (self.rates[0] / self.path.largest_speed(self.piece)).powi(2)
+    }
+
     /// Position of a joint, and its first three derivatives by the clock.
     pub(super) fn joint(&self, joint: usize) -> [f64; 4] {
         let [position, first, second] = self.path.joint_at(self.piece, self.from, joint);
         let third = 6.0 * self.path.powers(self.piece)[3][joint];
         let [s1, s2, s3] = self.rates;
         [position, first * s1, second * s1 * s1 + first * s2, third * s1.powi(3) + 3.0 * second * s1 * s2 + first * s3]
+    }
+
+    /// Position of a joint as a polynomial in the distance of the clock from here, up to the third power.
+    pub(super) fn expansion(&self, joint: usize) -> Coefficients {
+        let [position, first, second, third] = self.joint(joint);
+        polynomial([position, first, second / 2.0, third / 6.0])
     }
 }
 

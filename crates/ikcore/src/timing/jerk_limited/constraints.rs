@@ -4,8 +4,11 @@
 //! sqrt(y) (Q''' y + 3/2 Q'' y' + 1/2 Q' y'').
 
 use super::super::constant_limits::ConstantLimits;
-use super::clock::Clock;
+use super::clock::{Clock, PathPoint};
 use super::rate_spline::{RateSpline, Weights};
+use crate::constraint::{TipInterval, TipRates, VectorJet};
+use crate::limits::TipField;
+use crate::math::vector3::{Vector, norm};
 
 /// Places in each interval where the limits are imposed, and their weights in integrals (Simpson's rule). At both ends, because the jerk
 /// jumps at knots.
@@ -14,73 +17,122 @@ const PLACES: [[f64; 2]; 3] = [[0.0, 1.0 / 6.0], [0.5, 4.0 / 6.0], [1.0, 1.0 / 6
 /// Rows of all points.
 #[derive(Debug)]
 pub(super) struct Constraints {
-    pub points: Vec<Point>,
+    pub points: Vec<RatePoint>,
     /// By point, then by joint.
-    rows: Vec<Row>,
+    rows: Vec<JointRow>,
     joints: usize,
+    /// By point, then by tip with an acceleration limit.
+    tip_rows: Vec<TipRow>,
+    tips: usize,
 }
 
 /// One point of the clock.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(super) struct RatePoint {
     pub interval: usize,
     pub weights: Weights,
     /// Weight in the integral over the clock.
     pub share: f64,
-    /// 1 / y where a velocity limit is reached; zero without.
+    /// 1 / y where a velocity limit or the largest path speed is reached; zero without.
     pub slowness: f64,
 }
 
 /// Limits of one joint at one point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct JointRow {
     /// |a . (y, y')| <= 1: the acceleration limit.
     pub acceleration: [f64; 2],
     /// |b . (y, y', y'')| <= 1 / sqrt(y): the jerk limit.
     pub jerk: [f64; 3],
 }
 
+/// The acceleration limit of a tip at one point: |a y + b y'| <= 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TipRow {
+    pub of_y: Vector,
+    pub of_slope: Vector,
+}
+
 impl Constraints {
-    /// The limits of a motion at the `rate` of a `clock`. A jerk that takes an acceleration from one limit to the other within `step` (s)
-    /// is as good as any higher one: a spline cannot follow it.
-    pub(super) fn new(clock: &Clock, rate: &RateSpline, limits: &ConstantLimits, step: f64) -> Self {
-        let inverses = inverses(limits, step);
+    /// The limits of a motion at the `rate` of a `clock`, whose intervals take about these times (s).
+    pub(super) fn new(clock: &Clock, rate: &RateSpline, times: &[f64], limits: &ConstantLimits) -> Self {
         let mut points = Vec::with_capacity(PLACES.len() * rate.intervals());
         let mut rows = Vec::with_capacity(PLACES.len() * rate.intervals() * limits.dof());
-        for interval in 0..rate.intervals() {
+        let mut tips = limits.tips.as_ref().map(TipsAt::new);
+        let mut tip_rows = vec![];
+        for (interval, time) in times.iter().enumerate() {
             for [place, weight] in PLACES {
                 let at = clock.at(rate.reading(interval, place), rate.reading(interval, 0.5));
-                let mut slowness = 0.0_f64;
-                for (joint, [v, a, b]) in inverses.iter().enumerate() {
+                let mut slowness = at.slowness();
+                if let Some(tips) = &mut tips {
+                    slowness = slowness.max(tips.push(&at, &mut tip_rows));
+                }
+                for joint in 0..limits.dof() {
                     let [_, first, second, third] = at.joint(joint);
+                    let [v, a, b] = inverses(limits, joint, *time);
                     slowness = slowness.max((first * v).powi(2));
-                    rows.push(Row {
+                    rows.push(JointRow {
                         acceleration: [second * a, 0.5 * first * a],
                         jerk: [third * b, 1.5 * second * b, 0.5 * first * b],
                     });
                 }
                 let weights = rate.weights(interval, place);
-                points.push(Point { interval, weights, share: weight * rate.length(interval), slowness });
+                points.push(RatePoint { interval, weights, share: weight * rate.length(interval), slowness });
             }
         }
-        Self { points, rows, joints: limits.dof() }
+        let tips = tip_rows.len() / points.len();
+        Self { points, rows, joints: limits.dof(), tip_rows, tips }
+    }
+
+    /// The largest change of the jerk of a joint in an interval, and at its end to the next, as parts of its limit.
+    pub(super) fn jerk_changes(&self, rate: &RateSpline, interval: usize) -> [f64; 2] {
+        let first = interval * PLACES.len();
+        let last = first + PLACES.len() - 1;
+        let largest = |points: [usize; 2]| {
+            let change = |joint: usize| {
+                let [one, other] = points.map(|point| self.jerk(rate, point, joint));
+                (other - one).abs()
+            };
+            (0..self.joints).map(change).fold(0.0, f64::max)
+        };
+        let inside = (first..last).map(|point| largest([point, point + 1])).fold(largest([first, last]), f64::max);
+        [inside, if last + 1 < self.points.len() { largest([last, last + 1]) } else { 0.0 }]
+    }
+
+    /// The jerk of a joint at a point, as a part of its limit.
+    fn jerk(&self, rate: &RateSpline, point: usize, joint: usize) -> f64 {
+        let y = rate.at(point / PLACES.len(), PLACES[point % PLACES.len()][0]);
+        y[0].sqrt() * self.rows[point * self.joints + joint].used(&y)[1]
     }
 
     /// Each point with its rows.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&Point, &[Row])> {
-        self.points.iter().zip(self.rows.chunks_exact(self.joints))
+    pub(super) fn all(&self) -> impl Iterator<Item = (&RatePoint, &[JointRow], &[TipRow])> {
+        self.points.iter().enumerate().zip(self.rows.chunks_exact(self.joints)).map(|((i, point), rows)| {
+            let tips = i * self.tips..(i + 1) * self.tips;
+            (point, rows, &self.tip_rows[tips])
+        })
     }
 
     /// Number of inequalities.
     pub(super) fn count(&self) -> usize {
-        self.points.len() + 4 * self.rows.len()
+        self.points.len() + 4 * self.rows.len() + self.tip_rows.len()
     }
 
     /// Measures the clock so that y = 1 everywhere reaches a limit and violates none. Returns that y in the old measure.
     pub(super) fn normalize(&mut self) -> f64 {
-        let of_row = |row: &Row| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
-        let of_point = |(point, rows): (&Point, &[Row])| rows.iter().map(of_row).fold(point.slowness, f64::max);
+        let of_row = |row: &JointRow| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
+        let of_point = |(point, rows, tips): (&RatePoint, &[JointRow], &[TipRow])| {
+            let of_tips = tips.iter().map(|tip| norm(&tip.of_y)).fold(point.slowness, f64::max);
+            rows.iter().map(of_row).fold(of_tips, f64::max)
+        };
         let y = 1.0 / self.all().map(of_point).fold(0.0, f64::max);
+        self.restore(1.0 / y);
+        y
+    }
+
+    /// Goes back to the measure in which y is this many times larger.
+    pub(super) fn restore(&mut self, unit: f64) {
+        let y = 1.0 / unit;
         for point in &mut self.points {
             point.slowness *= y;
         }
@@ -88,17 +140,69 @@ impl Constraints {
             row.acceleration = row.acceleration.map(|a| a * y);
             row.jerk = row.jerk.map(|b| b * y * y.sqrt());
         }
-        y
+        for tip in &mut self.tip_rows {
+            tip.of_y = tip.of_y.map(|a| a * y);
+            tip.of_slope = tip.of_slope.map(|b| b * y);
+        }
     }
 }
 
-/// Inverses of the limits on velocity, acceleration and jerk of each joint; zero without limit. A joint with a limit of zero does not move.
-fn inverses(limits: &ConstantLimits, step: f64) -> Vec<[f64; 3]> {
+/// The motion of limited tips at a point of the clock.
+struct TipsAt<'a> {
+    rates: &'a TipRates,
+    interval: TipInterval,
+}
+
+impl<'a> TipsAt<'a> {
+    fn new(rates: &'a TipRates) -> Self {
+        Self { rates, interval: TipInterval::new(rates.robot()) }
+    }
+
+    /// Adds the rows of acceleration limits; returns 1 / y where a limit of speed or turn speed is reached.
+    fn push(&mut self, at: &PathPoint<'_>, rows: &mut Vec<TipRow>) -> f64 {
+        let robot = self.rates.robot();
+        self.interval.set(robot, (0..robot.dof()).map(|joint| at.expansion(joint)), [0.0, 1.0]);
+        let mut slowness = 0.0_f64;
+        for tip in self.rates.tips() {
+            let jet = self.interval.jet(robot, tip);
+            let part = |rate: &VectorJet, field| (norm(&rate.middle()) / tip.limit(field)).powi(2);
+            let speeds = [part(&jet.velocity, TipField::Speed), part(&jet.turn, TipField::TurnSpeed)];
+            slowness = speeds.into_iter().fold(slowness, f64::max);
+            let limit = tip.limit(TipField::Acceleration);
+            if limit.is_finite() {
+                let of_y = jet.velocity.derivative().middle().map(|a| a / limit);
+                rows.push(TipRow { of_y, of_slope: jet.velocity.middle().map(|v| 0.5 * v / limit) });
+            } else if self.rates.limit_acceleration() {
+                rows.push(TipRow { of_y: [0.0; 3], of_slope: [0.0; 3] });
+            }
+        }
+        slowness
+    }
+}
+
+impl TipRow {
+    /// The acceleration as a part of its limit.
+    #[inline]
+    pub(super) fn used(&self, [y, slope, _]: &[f64; 3]) -> Vector {
+        std::array::from_fn(|k| self.of_y[k] * y + self.of_slope[k] * slope)
+    }
+}
+
+impl JointRow {
+    /// The linear forms of the acceleration and of the jerk.
+    #[inline]
+    pub(super) fn used(&self, [y, slope, curvature]: &[f64; 3]) -> [f64; 2] {
+        let ([a0, a1], [b0, b1, b2]) = (self.acceleration, self.jerk);
+        [a0 * y + a1 * slope, b0 * y + b1 * slope + b2 * curvature]
+    }
+}
+
+/// Inverses of the limits on velocity, acceleration and jerk of a joint in an interval that takes this time (s); zero without limit. A joint
+/// with a limit of zero does not move. A jerk that takes an acceleration from one limit to the other in this time is as good as any higher
+/// one: a spline cannot follow it.
+fn inverses(limits: &ConstantLimits, joint: usize, time: f64) -> [f64; 3] {
     let inverse = |limit: f64| if limit > 0.0 { 1.0 / limit } else { 0.0 };
-    let of_joint = |j: usize| {
-        let [velocity, acceleration, jerk] = [limits.velocity[j], limits.acceleration[j], limits.jerk[j]];
-        let steepest = if jerk.is_finite() { jerk.min(2.0 * acceleration / step) } else { jerk };
-        [velocity, acceleration, steepest].map(inverse)
-    };
-    (0..limits.dof()).map(of_joint).collect()
+    let [velocity, acceleration, jerk] = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]];
+    let steepest = if jerk.is_finite() { jerk.min(2.0 * acceleration / time) } else { jerk };
+    [velocity, acceleration, steepest].map(inverse)
 }

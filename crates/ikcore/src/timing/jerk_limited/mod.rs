@@ -19,7 +19,7 @@ mod constraints;
 mod rate_spline;
 mod readings;
 
-use barrier::fastest_rate;
+use barrier::{faster_rate, fastest_rate};
 use clock::Clock;
 use constraints::Constraints;
 use rate_spline::RateSpline;
@@ -33,10 +33,15 @@ use crate::interrupt::checkpoint_at;
 use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
-/// Largest slowdown of quintics between knots, relative to the need at the knots. Beyond it the intervals are halved, at most
-/// `HALVINGS` times.
-const FAITHFUL: f64 = 1.002;
-const HALVINGS: u32 = 2;
+/// Rounds of refinement of the knots at most; one that saves less than this fraction of the duration is the last.
+const REFINEMENTS: usize = 6;
+const WORTHWHILE: f64 = 1e-3;
+/// Excess over a limit between the places where it is imposed that calls for another round.
+const FAITHFUL: f64 = 2e-3;
+/// Change of the jerk in an interval or at a knot, as a part of its limit, at which intervals are halved.
+const CHANGE: f64 = 0.3;
+/// Number of the shortest intervals that a motion may consist of.
+const SHORTEST: f64 = 5_000.0;
 
 /// Returns the fastest motion along `path`; `profile` is the fastest one without jerk limits.
 ///
@@ -53,53 +58,74 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
     let clock = Clock::new(path);
     let Readings { knots, step } = Readings::new(&clock, path, profile, limits);
     let mut rate = RateSpline::new(knots);
-    let constraints = Constraints::new(&clock, &rate, limits, step);
-    fastest_rate(&mut rate, constraints)?;
-    let played = Played { path, clock, rate };
-    let mut parts = 1;
-    loop {
-        let motion = played.interpolated(parts)?;
-        let slowdown = limits.slowdown(&motion);
-        if slowdown <= FAITHFUL || parts >= 1 << HALVINGS {
-            return motion.slowed(slowdown * (1.0 + ROUNDING));
+    let mut constraints = Constraints::new(&clock, &rate, &vec![step; rate.intervals()], limits);
+    fastest_rate(&mut rate, &mut constraints)?;
+    let (mut best, _) = played(path, &clock, &rate, limits)?;
+    for _ in 0..REFINEMENTS {
+        let parts = parts(&rate, &constraints, best.duration() / SHORTEST);
+        if parts.iter().all(|parts| *parts == 1) {
+            break;
         }
-        parts *= 2;
+        rate = rate.refined(&parts);
+        constraints = Constraints::new(&clock, &rate, &rate.durations(), limits);
+        faster_rate(&mut rate, &mut constraints)?;
+        let (motion, slowdown) = played(path, &clock, &rate, limits)?;
+        let saved = 1.0 - motion.duration() / best.duration();
+        if saved > 0.0 {
+            best = motion;
+        }
+        if saved < WORTHWHILE && slowdown < 1.0 + FAITHFUL {
+            break;
+        }
     }
+    Ok(best)
 }
 
-/// A path passed at a rate of its clock.
-struct Played<'a> {
-    path: &'a JointPath,
-    clock: Clock<'a>,
-    rate: RateSpline,
-}
-
-impl Played<'_> {
-    /// Returns quintics with the positions, velocities and accelerations at the knots of the rate, each interval cut in `parts`.
-    fn interpolated(&self, parts: usize) -> Result<Trajectory> {
-        let n = self.path.joints().len();
-        let intervals = self.rate.intervals();
-        let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity((intervals * parts + 1) * n));
-        let mut times = vec![0.0];
-        let mut push = |interval: usize, fraction: f64| {
-            let [y, slope, _] = self.rate.at(interval, fraction);
-            let at = self.clock.at(self.rate.reading(interval, fraction), self.rate.reading(interval, 0.5));
-            for joint in 0..n {
-                let [position, first, second, _] = at.joint(joint);
-                q.push(position);
-                qd.push(first * y.sqrt());
-                qdd.push(second * y + 0.5 * first * slope);
-            }
+/// Parts into which each interval is to be cut: two where the jerk of a joint changes much in it or at its ends, unless it takes less than
+/// `shortest` (s).
+fn parts(rate: &RateSpline, constraints: &Constraints, shortest: f64) -> Vec<usize> {
+    let mut parts = vec![1; rate.intervals()];
+    let times = rate.durations();
+    for interval in 0..rate.intervals() {
+        let changes = constraints.jerk_changes(rate, interval);
+        let beside = [Some(interval), (interval + 1 < rate.intervals()).then_some(interval + 1)];
+        let halved = if changes[1] > CHANGE {
+            &beside[..]
+        } else if changes[0] > CHANGE {
+            &beside[..1]
+        } else {
+            &[]
         };
-        push(0, 0.0);
-        for interval in 0..intervals {
-            checkpoint_at(interval)?;
-            for part in 0..parts {
-                let ends = [part, part + 1].map(|part| part as f64 / parts as f64);
-                times.push(times[times.len() - 1] + self.rate.duration(interval, ends));
-                push(interval, ends[1]);
-            }
-        }
-        Trajectory::from_samples(self.path.joints().to_vec(), &times, &q, Some(&qd), Some(&qdd))
+        halved.iter().flatten().filter(|i| times[**i] > shortest).for_each(|i| parts[*i] = 2);
     }
+    parts
+}
+
+/// Quintics with the positions, velocities and accelerations of a path at the knots of the rate of its clock, slowed down as the limits need,
+/// and by how much.
+fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantLimits) -> Result<(Trajectory, f64)> {
+    let n = path.joints().len();
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| Vec::with_capacity((rate.intervals() + 1) * n));
+    let mut times = vec![0.0];
+    let mut push = |interval: usize, fraction: f64| {
+        let [y, slope, _] = rate.at(interval, fraction);
+        let at = clock.at(rate.reading(interval, fraction), rate.reading(interval, 0.5));
+        for joint in 0..n {
+            let [position, first, second, _] = at.joint(joint);
+            q.push(position);
+            qd.push(first * y.sqrt());
+            qdd.push(second * y + 0.5 * first * slope);
+        }
+    };
+    push(0, 0.0);
+    for (interval, duration) in rate.durations().into_iter().enumerate() {
+        checkpoint_at(interval)?;
+        times.push(times[times.len() - 1] + duration);
+        push(interval, 1.0);
+    }
+    let motion = Trajectory::from_samples(path.joints().to_vec(), &times, &q, Some(&qd), Some(&qdd))?;
+    // A path with speeds of its own is not passed faster than these.
+    let least = if path.has_speeds() { 1.0 } else { 0.0 };
+    let slowdown = limits.slowdown(&motion).max(least);
+    Ok((motion.slowed(slowdown * (1.0 + ROUNDING))?, slowdown))
 }

@@ -27,6 +27,27 @@ impl RateSpline {
         Self { knots, coefficients }
     }
 
+    /// The same spline on finer knots: each interval cut in this number of equal parts.
+    pub(super) fn refined(&self, parts: &[usize]) -> Self {
+        let places = parts.iter().enumerate().flat_map(|(interval, parts)| {
+            (0..*parts).map(move |part| (interval, [part, part + 1].map(|part| part as f64 / *parts as f64)))
+        });
+        let places: Vec<(usize, [f64; 2])> = places.collect();
+        // The coefficient of a knot interval [p, q] is the blossom of y there, y((p + q) / 2) - y'' (q - p)^2 / 8.
+        let coefficient = |interval: usize, [from, to]: [f64; 2]| {
+            let [middle, .., curvature] = self.at(interval, 0.5 * (from + to));
+            middle - 0.125 * curvature * ((to - from) * self.length(interval)).powi(2)
+        };
+        let [(first, [_, end]), (last, [begin, _])] = [places[0], places[places.len() - 1]];
+        let before = coefficient(first, [-end, 0.0]);
+        let after = coefficient(last, [1.0, 2.0 - begin]);
+        let inner = places.iter().map(|(interval, ends)| coefficient(*interval, *ends));
+        let coefficients = std::iter::once(before).chain(inner).chain([after]).collect();
+        let mut knots: Vec<f64> = places.iter().map(|(interval, ends)| self.reading(*interval, ends[0])).collect();
+        knots.extend(self.knots.last());
+        Self { knots, coefficients }
+    }
+
     /// Number of intervals between knots.
     pub(super) fn intervals(&self) -> usize {
         self.knots.len() - 1
@@ -67,9 +88,10 @@ impl RateSpline {
         self.weights(interval, fraction).map(|weights| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2])
     }
 
-    /// The time that passes between two places in an interval, where y is the squared rate: the integral of 1 / sqrt(y).
-    pub(super) fn duration(&self, interval: usize, [from, to]: [f64; 2]) -> f64 {
-        let share = |[at, weight]: [f64; 2]| weight / self.at(interval, from + at * (to - from))[0].sqrt();
-        self.length(interval) * (to - from) * GAUSS.into_iter().map(share).sum::<f64>()
+    /// The time that each interval takes, where y is the squared rate: the integral of 1 / sqrt(y).
+    pub(super) fn durations(&self) -> Vec<f64> {
+        let share = |interval: usize, [at, weight]: [f64; 2]| weight / self.at(interval, at)[0].sqrt();
+        let of_interval = |interval| GAUSS.into_iter().map(|point| share(interval, point)).sum::<f64>();
+        (0..self.intervals()).map(|interval| self.length(interval) * of_interval(interval)).collect()
     }
 }

@@ -5,11 +5,11 @@ use super::super::joint_path::JointPath;
 use super::super::reachability::SpeedProfile;
 use super::clock::Clock;
 
-/// Intervals of equal times: at least so many, and more for a motion in which accelerations change often, up to so many a piece of the
-/// path, and at most so many.
-const LEAST: f64 = 200.0;
-const PER_CHANGE: f64 = 2.5;
-const PER_PIECE: f64 = 40.0;
+/// Intervals of equal times: so many; more for each piece of the path, or for each time that an acceleration needs to reach its limit,
+/// whichever are fewer; and at most so many.
+const LEAST: f64 = 150.0;
+const PER_PIECE: f64 = 8.0;
+const PER_RAMP: f64 = 10.0;
 const MOST: f64 = 20_000.0;
 
 /// Knots closer than this fraction of such an interval are left out: those in time, and breaks of the path.
@@ -57,12 +57,11 @@ impl Readings {
     }
 }
 
-/// The time (s) between two knots of a motion that takes `duration` without jerk limits.
+/// Time (s) between two knots of a motion that takes `duration` without jerk limits.
 fn time_step(path: &JointPath, duration: f64, limits: &ConstantLimits) -> f64 {
-    // An acceleration goes from none to its limit in this time.
-    let change = limits.acceleration.iter().zip(&limits.jerk).map(|(acceleration, jerk)| acceleration / jerk);
-    let change = change.filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min);
-    let more = (PER_CHANGE * duration / change).min(PER_PIECE * path.pieces() as f64);
+    let ramps = limits.acceleration.iter().zip(&limits.jerk).map(|(acceleration, jerk)| acceleration / jerk);
+    let shortest = ramps.filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min);
+    let more = (PER_RAMP * duration / shortest).min(PER_PIECE * path.pieces() as f64);
     duration / (LEAST + more).min(MOST)
 }
 

@@ -4,7 +4,7 @@
 use super::control_tick::{ControlTick, RunningController, TickProgress};
 use super::controller_choice::Controller;
 use crate::error::{Error, Result, require_finite, require_positive};
-use crate::limits::{AdmittedStart, Field, JointOutside, LimitAt, Limits, StartSlack, TickBox};
+use crate::limits::{AdmittedStart, Field, JointOutside, LimitAt, Limits, StartSlack, TickBox, TipField};
 use crate::math::MAX_DOF;
 use crate::objective::Point;
 use crate::rng::{self, LazyRng};
@@ -80,6 +80,7 @@ impl ControlSession {
         limits.validate(dt, 0)?;
         let remedy = "a controller keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track_model_free", remedy)?;
+        limits.refuse_tips(&TipField::ALL, "track_model_free", "a controller knows nothing of the arm")?;
         let AdmittedStart { q, outside } = limits.admit_start(None, "start", start, &StartSlack::default())?;
         let start = &q[..];
         Ok(Self {

@@ -275,7 +275,7 @@ impl WayBack {
         self.away = self.away.map(|away| Away { held, ..away });
     }
 
-    /// Joints at their lower and upper limits that would have to go beyond to lower the error.
+    /// Joints at their lower and upper limits that would have to go beyond to lower the error. Those with equal limits are at both.
     fn held(&mut self, context: &StepContext<'_>, bounds: &Bounds) -> [u64; 2] {
         let mut slope = Point::from_elem(0.0, context.q.len());
         let score = context.aims.linearize(context.robot, context.q, &mut self.linearization, |_| ()).score;
@@ -285,7 +285,8 @@ impl WayBack {
         for (j, q) in context.q.iter().enumerate() {
             let at = [q - bounds.lower()[j], bounds.upper()[j] - q].map(|room| room <= AT_LIMIT);
             let outward = [slope[j] > least, slope[j] < -least];
-            (0..2).filter(|side| at[*side] && outward[*side]).for_each(|side| held[side] |= 1 << j);
+            let is_locked = bounds.lower()[j] >= bounds.upper()[j] && slope[j].abs() > least;
+            (0..2).filter(|side| is_locked || at[*side] && outward[*side]).for_each(|side| held[side] |= 1 << j);
         }
         held
     }

@@ -1,0 +1,236 @@
+//! The motion of a whole program, step by step.
+
+use super::around::MoveSurroundings;
+use super::ladder::Rung;
+use super::moves_options::MovesOptions;
+use super::outline::{Stage, StageKind};
+use super::program::Move;
+use super::report::{bounds_on, speed_on, tip_speed};
+use super::run::{Run, RunPart};
+use super::timing::{PathTime, path_times, time_at, timed};
+use crate::error::{Error, Result};
+use crate::free_path;
+use crate::math::vector::largest_difference;
+use crate::message::Message;
+use crate::plan::{EndTurns, Endpoint, MoveReport, PointToPointOptions, SpeedBound};
+use crate::solver::Monitor;
+use crate::timing::{ConstantLimits, JointPath};
+use crate::trajectory::{Trajectory, polynomial};
+
+/// Joint difference (rad, m) below which a joint move does not move.
+const NOTHING: f64 = 1e-9;
+
+/// The motion so far, and its moves.
+pub(super) struct Assembly<'a> {
+    around: MoveSurroundings<'a>,
+    limits: &'a ConstantLimits,
+    moves: &'a [Move],
+    options: &'a MovesOptions,
+    /// Configuration at the end.
+    q: Vec<f64>,
+    motion: Option<Trajectory>,
+    reports: Vec<MoveReport>,
+}
+
+impl<'a> Assembly<'a> {
+    pub fn new(
+        around: MoveSurroundings<'a>,
+        limits: &'a ConstantLimits,
+        moves: &'a [Move],
+        options: &'a MovesOptions,
+        start: &[f64],
+    ) -> Self {
+        Self { around, limits, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
+    }
+
+    /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
+    ///
+    /// # Errors
+    /// Those of timings; [`Error::NotFound`] where something is in the way.
+    pub fn add_all(
+        &mut self,
+        stages: &'a [Stage],
+        rungs: &[Rung],
+        paths: Vec<JointPath>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<()> {
+        let (mut starts, mut paths) = (rungs.iter().skip(1), paths.into_iter());
+        let (mut parts, mut radii): (Vec<RunPart<'a>>, Vec<f64>) = (vec![], vec![]);
+        for Stage { kind, blend } in stages {
+            match kind {
+                StageKind::Rest(index, seconds) => self.rest(*index, *seconds)?,
+                StageKind::Joints(index) => {
+                    let Some(rung) = starts.next() else { continue };
+                    let from = parts.last().map_or_else(|| self.q.clone(), end_of);
+                    let is_still = largest_difference(&from, &rung.q) <= NOTHING;
+                    if is_still && parts.is_empty() && *blend == 0.0 {
+                        self.rest(*index, 0.0)?;
+                        continue;
+                    }
+                    if is_still {
+                        return Err(self.without_room(*index, parts.last()));
+                    }
+                    let path = JointPath::polyline(self.limits.joint_names(), &[&from[..], &rung.q].concat(), 0.0)?;
+                    parts.push(RunPart { index: *index, tool_path: None, path });
+                }
+                StageKind::Along(tool_path) => {
+                    let Some(path) = paths.next() else { continue };
+                    parts.push(RunPart { index: tool_path.pieces[0].index, tool_path: Some(tool_path), path });
+                }
+            }
+            if *blend > 0.0 {
+                radii.push(*blend);
+            } else if !parts.is_empty() {
+                self.go(std::mem::take(&mut parts), std::mem::take(&mut radii), monitor)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds parts with rounded corners between them where that is possible and clear, else with stops.
+    fn go(&mut self, parts: Vec<RunPart<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
+        if !radii.is_empty()
+            && let Some(run) = Run::rounded(self.around.robot, self.limits, &parts, &radii)?
+        {
+            let motion = timed(&run.path, self.limits)?;
+            if self.around.is_free() || self.around.fault_on(&motion)?.is_none() {
+                return self.add(&run, motion);
+            }
+        }
+        for part in parts {
+            if part.tool_path.is_none() && !self.around.is_free() {
+                self.way_around(&part, monitor)?;
+                continue;
+            }
+            let run = Run::of(part);
+            let motion = timed(&run.path, self.limits)?;
+            if !self.around.is_free()
+                && let Some(fault) = self.around.fault_on(&motion)?
+            {
+                return Err(self.not_found(run.parts[0].index, fault.into()));
+            }
+            self.add(&run, motion)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a run and the reports of its moves.
+    fn add(&mut self, run: &Run<'a>, motion: Trajectory) -> Result<()> {
+        let begin = self.now();
+        let times = path_times(&run.path, &motion)?;
+        let mut start = begin;
+        for (i, (part, window)) in run.parts.iter().zip(&run.windows).enumerate() {
+            // A corner belongs to its two parts by halves.
+            let end_of_part = match run.windows.get(i + 1) {
+                Some(next) => begin + time_at(&times, 0.5 * (window.end() + next.begin)),
+                None => begin + motion.duration(),
+            };
+            let Some(tool_path) = part.tool_path else {
+                let speed = tip_speed(self.around.robot, &motion, [start - begin, end_of_part - begin])?;
+                self.report(part.index, [start, end_of_part], speed, vec![]);
+                start = end_of_part;
+                continue;
+            };
+            let inside = |at: &&PathTime| window.begin <= at.s && at.s <= window.end();
+            let own = |at: &PathTime| PathTime { s: window.from + at.s - window.begin, ..*at };
+            let on_it: Vec<PathTime> = times.iter().filter(inside).map(own).collect();
+            for (index, s) in tool_path.ends_of_moves() {
+                let is_last = s >= window.to || on_it.is_empty();
+                let end = if is_last { end_of_part } else { begin + time_at(&on_it, s) };
+                let bounds = bounds_on(tool_path, index, (&motion, &on_it, begin), self.limits);
+                self.report(index, [start, end], speed_on(tool_path, index, &on_it), bounds);
+                start = end;
+            }
+        }
+        self.push(motion)
+    }
+
+    /// The motion and the reports of its moves.
+    ///
+    /// # Errors
+    /// [`Error::InvalidMove`] if nothing moves and nothing takes time.
+    pub fn finish(self) -> Result<(Trajectory, Vec<MoveReport>)> {
+        let still = || Error::InvalidMove {
+            what: "the program".into(),
+            problem: "it takes no time: all its moves end where the arm is".into(),
+        };
+        Ok((self.motion.ok_or_else(still)?, self.reports))
+    }
+
+    fn now(&self) -> f64 {
+        self.motion.as_ref().map_or(0.0, Trajectory::duration)
+    }
+
+    fn push(&mut self, next: Trajectory) -> Result<()> {
+        self.q = next.end();
+        self.motion = Some(match self.motion.take() {
+            None => next,
+            Some(motion) => motion.then(&next, 0.0)?,
+        });
+        Ok(())
+    }
+
+    fn report(&mut self, index: usize, [start, end]: [f64; 2], speed: f64, bound_by: Vec<SpeedBound>) {
+        let name = self.moves[index].name.clone();
+        self.reports.push(MoveReport { name, start, end, speed, bound_by });
+    }
+
+    fn rest(&mut self, index: usize, seconds: f64) -> Result<()> {
+        let start = self.now();
+        if seconds > 0.0 {
+            let still = self.q.iter().map(|q| polynomial([*q])).collect();
+            self.push(Trajectory::new(self.limits.joint_names(), vec![0.0, seconds], still)?)?;
+        }
+        self.report(index, [start, self.now()], 0.0, vec![]);
+        Ok(())
+    }
+
+    /// Adds a motion to the end of a joint move that keeps clear of everything, and keeps what is to be kept.
+    fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
+        let MovesOptions { surroundings, keeps, limits, stop, seed } = self.options;
+        let options = PointToPointOptions {
+            end_turns: EndTurns::AsGiven,
+            surroundings: surroundings.clone(),
+            keeps: keeps.clone(),
+            limits: limits.clone(),
+            stop: *stop,
+            seed: *seed,
+            ..PointToPointOptions::default()
+        };
+        let [start, end] = [self.q.clone(), end_of(part)].map(Endpoint::Configuration);
+        let MoveSurroundings { robot, space, .. } = self.around;
+        let plan = free_path::point_to_point(robot, &start, &[end], space, &options, monitor)?;
+        let fault = if plan.violations.is_empty() && plan.obstruction.is_none() {
+            self.around.fault_on(&plan.trajectory)?.map(Into::into)
+        } else {
+            Some(plan.message())
+        };
+        if let Some(problem) = fault {
+            return Err(self.not_found(part.index, problem));
+        }
+        let (start, duration) = (self.now(), plan.trajectory.duration());
+        let speed = tip_speed(robot, &plan.trajectory, [0.0, duration])?;
+        self.push(plan.trajectory)?;
+        self.report(part.index, [start, self.now()], speed, vec![]);
+        Ok(())
+    }
+
+    fn not_found(&self, index: usize, problem: Message) -> Error {
+        Error::NotFound { what: format!("a motion along {}", self.moves[index].named(index)), problem }
+    }
+
+    fn without_room(&self, index: usize, before: Option<&RunPart<'_>>) -> Error {
+        let with_blend = if before.is_some() { index - 1 } else { index };
+        let still = self.moves[index].named(index);
+        let problem =
+            format!("its blend has no room, because {still} ends where it begins: leave that out, or give no blend");
+        Error::InvalidMove { what: self.moves[with_blend].named(with_blend), problem: problem.into() }
+    }
+}
+
+/// Joint positions at the end of a part.
+fn end_of(part: &RunPart<'_>) -> Vec<f64> {
+    let mut q = vec![0.0; part.path.joints().len()];
+    part.path.position(part.path.breaks()[part.path.pieces()], &mut q);
+    q
+}

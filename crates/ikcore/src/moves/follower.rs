@@ -1,0 +1,217 @@
+//! Joint positions along a path of the tip, from configuration to configuration by Newton's method.
+
+use super::tool_path::ToolPath;
+use crate::error::Result;
+use crate::interrupt::checkpoint_at;
+use crate::math::cubic_spline::SplineEnds;
+use crate::math::so3::{norm, rotation_between};
+use crate::math::vector::{distance, largest_difference};
+use crate::objective::{Bounds, Linearization, Point};
+use crate::robot::Robot;
+use crate::task::{Criterion, Target, Tolerance};
+use crate::timing::JointPath;
+
+/// Steps of Newton's method, and the squared error at which they end (m^2, rad^2).
+const STEPS: usize = 20;
+const MET: f64 = 1e-22;
+/// Squared error up to which a pose counts as met if no step leads nearer.
+const AS_NEAR_AS_SOLVES: f64 = 1e-14;
+/// Damping relative to squared error, as in the library's Levenberg-Marquardt.
+const DAMPING: f64 = 0.05;
+
+/// Longest step along the path (m), and as a part of a turn by a radian.
+const LONGEST_STEP: f64 = 0.05;
+const PART_OF_TURN: f64 = 0.25;
+/// Largest change of a joint in a step (rad, m), and the halvings after which the path counts as lost.
+const LARGEST_CHANGE: f64 = 0.4;
+const HALVINGS: i32 = 10;
+
+/// Largest distance (m) and angle (rad) of the tip from its path between knots.
+const ACCURACY: [f64; 2] = [2e-6, 2e-5];
+/// The same relative to the length between knots, so that the speed of the tip is that of the parameter.
+const SLOPE_ACCURACY: f64 = 5e-5;
+/// Fractions of an interval at which the tip is looked at.
+const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
+/// Rounds of refinement, and the most knots.
+const ROUNDS: usize = 16;
+const MOST_KNOTS: usize = 5000;
+
+/// Joint positions at lengths along a path.
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    /// Lengths (m), from 0 to that of the path.
+    pub knots: Vec<f64>,
+    /// Joint positions at each, in row-major order.
+    pub rows: Vec<f64>,
+}
+
+/// Where a path is lost.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lost {
+    /// Length up to there (m).
+    pub at: f64,
+}
+
+impl Track {
+    /// Joint positions at knot `i`.
+    pub fn row(&self, i: usize) -> &[f64] {
+        let n = self.rows.len() / self.knots.len();
+        &self.rows[i * n..(i + 1) * n]
+    }
+
+    /// Joint positions at the end.
+    pub fn end(&self) -> &[f64] {
+        self.row(self.knots.len() - 1)
+    }
+
+    fn push(&mut self, knot: f64, q: &[f64]) {
+        self.knots.push(knot);
+        self.rows.extend_from_slice(q);
+    }
+}
+
+/// Follows paths of the tip within a box.
+pub(super) struct Follower<'a> {
+    robot: &'a Robot,
+    bounds: Bounds,
+    linearization: Linearization,
+    /// Evaluations of the kinematics so far.
+    pub evaluations: usize,
+}
+
+impl<'a> Follower<'a> {
+    pub fn new(robot: &'a Robot, bounds: Bounds) -> Self {
+        Self { robot, bounds, linearization: Linearization::default(), evaluations: 0 }
+    }
+
+    /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be.
+    pub fn follow(&mut self, path: &ToolPath, q: &[f64]) -> Result<Track, Lost> {
+        let mut track = Track { knots: vec![0.0], rows: q.to_vec() };
+        let mut before = Point::from_slice(q);
+        if !self.project(path, 0.0, &mut before) {
+            return Err(Lost { at: 0.0 });
+        }
+        track.rows.copy_from_slice(&before);
+        for (piece, begin) in path.pieces.iter().zip(&path.breaks) {
+            let end = begin + piece.length;
+            let longest = LONGEST_STEP.min(PART_OF_TURN * piece.length_per_turn());
+            let even = piece.length / (piece.length / longest).ceil().max(2.0);
+            self.follow_piece(path, [*begin, end], even, &mut track)?;
+        }
+        Ok(track)
+    }
+
+    fn follow_piece(
+        &mut self,
+        path: &ToolPath,
+        [begin, end]: [f64; 2],
+        even: f64,
+        track: &mut Track,
+    ) -> Result<(), Lost> {
+        let (mut at, mut step) = (begin, even);
+        let smallest = even * 0.5_f64.powi(HALVINGS);
+        while at < end {
+            // The end is met exactly, and no sliver is left before it.
+            let next = if at + 1.2 * step >= end { end } else { at + step };
+            let last = track.knots.len() - 1;
+            let mut q = Point::from_slice(track.row(last));
+            if last > 0 {
+                let stretch = (next - at) / (track.knots[last] - track.knots[last - 1]);
+                q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
+                self.bounds.clip(&mut q);
+            }
+            if self.project(path, next, &mut q) && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE {
+                track.push(next, &q);
+                at = next;
+                step = (2.0 * step).min(even);
+            } else if step > smallest {
+                step *= 0.5;
+            } else {
+                return Err(Lost { at });
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves `q` to the nearest configuration with the tip at the length `s`. Returns whether there is one.
+    fn project(&mut self, path: &ToolPath, s: f64, q: &mut [f64]) -> bool {
+        let (target, criterion) = (Target::Pose(path.pose(s)), Criterion::from(Tolerance::default()));
+        let (robot, mut value, mut count) = (self.robot, f64::INFINITY, 0);
+        self.linearization.project(q, &self.bounds, STEPS, |q, at| {
+            let before = value;
+            value = target.linearize(robot, q, &criterion, &mut at.first).score.value;
+            count += 1;
+            let is_stuck = value >= before && value <= AS_NEAR_AS_SOLVES;
+            (!(value <= MET) && !is_stuck).then_some(DAMPING * value)
+        });
+        self.evaluations += count;
+        value <= AS_NEAR_AS_SOLVES
+    }
+
+    /// The joint path through a track, with knots added until the tip stays on its path between them.
+    ///
+    /// # Errors
+    /// [`Lost`] where knots do not help; interruptions.
+    pub fn refined(&mut self, path: &ToolPath, mut track: Track) -> Result<Result<JointPath, Lost>> {
+        let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
+        let mut coarse = vec![];
+        for _ in 0..ROUNDS {
+            let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?;
+            coarse.clear();
+            for i in 0..track.knots.len() - 1 {
+                checkpoint_at(i)?;
+                if self.is_coarse(path, &joints, [track.knots[i], track.knots[i + 1]]) {
+                    coarse.push(i);
+                }
+            }
+            if coarse.is_empty() {
+                let speeds = track.knots.windows(2).map(|ends| {
+                    let piece = path.piece_at(0.5 * (ends[0] + ends[1]));
+                    path.pieces[piece].speed.unwrap_or(f64::INFINITY)
+                });
+                return Ok(Ok(joints.with_speeds(speeds.collect())));
+            }
+            if track.knots.len() + coarse.len() > MOST_KNOTS {
+                break;
+            }
+            match self.halved(path, &track, &coarse, &joints) {
+                Ok(finer) => track = finer,
+                Err(lost) => return Ok(Err(lost)),
+            }
+        }
+        Ok(Err(Lost { at: coarse.first().map_or(0.0, |i| track.knots[*i]) }))
+    }
+
+    fn is_coarse(&mut self, path: &ToolPath, joints: &JointPath, [from, to]: [f64; 2]) -> bool {
+        let mut q = Point::from_elem(0.0, self.robot.dof());
+        let allowed = |most: f64| most.min((SLOPE_ACCURACY * (to - from)).max(1e-9));
+        self.evaluations += LOOKS.len();
+        LOOKS.iter().any(|look| {
+            let s = from + look * (to - from);
+            joints.position(s, &mut q);
+            let (tip, target) = (self.robot.tip(&q), path.pose(s));
+            distance(&tip.origin, &target.origin) > allowed(ACCURACY[0])
+                || norm(&rotation_between(&target, &tip)) > ACCURACY[1]
+        })
+    }
+
+    /// The track with the intervals `coarse` halved.
+    fn halved(&mut self, path: &ToolPath, track: &Track, coarse: &[usize], joints: &JointPath) -> Result<Track, Lost> {
+        let mut finer = Track { knots: vec![], rows: vec![] };
+        let mut coarse = coarse.iter().peekable();
+        let mut q = Point::from_elem(0.0, self.robot.dof());
+        for (i, knot) in track.knots.iter().enumerate() {
+            finer.push(*knot, track.row(i));
+            if coarse.next_if(|index| **index == i).is_some() {
+                let middle = 0.5 * (knot + track.knots[i + 1]);
+                joints.position(middle, &mut q);
+                self.bounds.clip(&mut q);
+                if !self.project(path, middle, &mut q) {
+                    return Err(Lost { at: middle });
+                }
+                finer.push(middle, &q);
+            }
+        }
+        Ok(finer)
+    }
+}

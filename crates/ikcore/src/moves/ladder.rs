@@ -1,0 +1,396 @@
+//! Configurations for a whole program, by dynamic programming.
+//!
+//! A program is cut into blocks: a joint move, and the paths of the tip after it. All that a block leaves open is the configuration at its
+//! start: a branch and whole turns, or also the self-motion of a redundant arm. A configuration from which a joint meets its limit on
+//! one of the paths of its block is no candidate. Of the sequences of candidates, the quickest is taken.
+
+use super::around::MoveSurroundings;
+use super::follower::{Follower, Lost, Track};
+use super::outline::{Stage, StageKind};
+use super::program::{JointGoal, Move, MoveKind};
+use super::tool_path::ToolPath;
+use crate::error::Result;
+use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
+use crate::math::Pose;
+use crate::math::vector::largest_difference;
+use crate::objective::{Bounds, Point};
+use crate::robot::{Robot, limit_rounding};
+use crate::solver::Monitor;
+use crate::task::Target;
+use crate::timing::ConstantLimits;
+
+/// Largest number of rungs of a step of the ladder; the quickest are kept.
+const MOST_RUNGS: usize = 24;
+
+/// Values of the redundancy at which a pose is solved.
+const REDUNDANCY: usize = 16;
+
+/// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
+const MOST_FOLLOWED: usize = 48;
+const ENOUGH: usize = 6;
+
+/// Distance (rad, m) from limits within which the path of a redundant arm stays where it can: splines swing a little between knots.
+const INSET: f64 = 1e-3;
+
+/// Joint difference below which two configurations are one.
+const SAME: f64 = 1e-6;
+
+/// A block of a program.
+#[derive(Debug)]
+pub(super) struct LadderBlock<'a> {
+    /// The joint move at its start; `None` for what comes before the first joint move.
+    pub goal: Option<(usize, &'a JointGoal)>,
+    /// The paths of the tip after it.
+    pub paths: Vec<&'a ToolPath>,
+}
+
+/// Configuration at the start of a block, and the joint positions along its paths.
+#[derive(Debug, Clone)]
+pub(super) struct Rung {
+    pub q: Point,
+    pub tracks: Vec<Track>,
+    /// Estimate of the time up to the end of the block (s).
+    cost: f64,
+    /// The rung of the block before.
+    before: usize,
+}
+
+/// Why a block has no rung.
+#[derive(Debug)]
+pub(super) enum Dead {
+    /// The goal of the joint move has no configuration: why.
+    Goal(crate::message::Message),
+    /// A path is lost at this length.
+    Path { path: usize, at: f64, cause: Cause },
+}
+
+/// What ends the following of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Cause {
+    /// No configuration nearby continues it.
+    OutOfReach,
+    /// A joint would have to go to this value.
+    Limit { joint: usize, value: f64 },
+    /// Something is in the way, or what is to be kept is broken: which, with advice.
+    Blocked(String),
+}
+
+impl Rung {
+    fn end(&self) -> &[f64] {
+        self.tracks.last().map_or(&self.q, Track::end)
+    }
+}
+
+/// The blocks of a program.
+pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<LadderBlock<'a>> {
+    let mut blocks = vec![LadderBlock { goal: None, paths: vec![] }];
+    for Stage { kind, .. } in stages {
+        match kind {
+            StageKind::Joints(index) => {
+                if let MoveKind::Joints(goal) = &moves[*index].kind {
+                    blocks.push(LadderBlock { goal: Some((*index, goal)), paths: vec![] });
+                }
+            }
+            StageKind::Along(path) => {
+                if let Some(block) = blocks.last_mut() {
+                    block.paths.push(path);
+                }
+            }
+            StageKind::Rest(..) => {}
+        }
+    }
+    blocks
+}
+
+/// The search for the configurations of a program.
+pub(super) struct Ladder<'a> {
+    robot: &'a Robot,
+    limits: &'a ConstantLimits,
+    around: MoveSurroundings<'a>,
+    /// Whether the tip's pose leaves the arm a self-motion.
+    is_redundant: bool,
+    follower: Follower<'a>,
+    each: SolveOptions,
+    /// Evaluations of the kinematics so far.
+    pub evaluations: usize,
+}
+
+impl<'a> Ladder<'a> {
+    pub fn new(around: MoveSurroundings<'a>, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
+        let robot = around.robot;
+        let is_redundant = robot.dof() > 6;
+        let bounds = if is_redundant {
+            let [lower, upper] = limits.inset_positions(INSET);
+            Bounds::from_ranges(lower.into_iter().zip(upper))
+        } else {
+            // Whole turns are chosen afterwards, so that one path serves all of them.
+            Bounds::from_ranges((0..robot.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
+        };
+        Self { robot, limits, around, is_redundant, follower: Follower::new(robot, bounds), each, evaluations: 0 }
+    }
+
+    /// The follower, for refinement.
+    pub fn follower(&mut self) -> &mut Follower<'a> {
+        &mut self.follower
+    }
+
+    /// The quickest sequence of rungs from the configuration `start`; the index of a block that has none, and why.
+    ///
+    /// # Errors
+    /// Those of `solve_all`.
+    pub fn climb(
+        &mut self,
+        blocks: &[LadderBlock<'_>],
+        start: &[f64],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Rung>, (usize, Dead)>> {
+        let mut ladder: Vec<Vec<Rung>> = vec![];
+        for (i, block) in blocks.iter().enumerate() {
+            let found = match (&block.goal, ladder.last()) {
+                (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
+                _ => self
+                    .tracks(start, &block.paths)
+                    .map(|tracks| vec![Rung { q: start.into(), tracks, cost: 0.0, before: 0 }]),
+            };
+            match found {
+                Ok(rungs) => ladder.push(rungs),
+                Err(dead) => return Ok(Err((i, dead))),
+            }
+        }
+        let mut chosen = vec![];
+        let mut index = 0; // the quickest comes first
+        for rungs in ladder.iter_mut().rev() {
+            let rung = rungs.swap_remove(index);
+            index = rung.before;
+            chosen.push(rung);
+        }
+        chosen.reverse();
+        self.evaluations += self.follower.evaluations;
+        Ok(Ok(chosen))
+    }
+
+    /// The rungs of a block after those of the block `before`, the quickest first.
+    fn rungs(
+        &mut self,
+        goal: &JointGoal,
+        paths: &[&ToolPath],
+        before: &[Rung],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Rung>, Dead>> {
+        let (mut rungs, mut failed) = (vec![], None);
+        match goal {
+            JointGoal::Configuration(q) => match self.tracks(q, paths) {
+                Ok(tracks) => rungs.push(self.after(before, q.as_slice().into(), tracks)),
+                Err(dead) => failed = Some(dead),
+            },
+            JointGoal::Pose(pose) => {
+                let candidates = match self.configurations(pose, before[0].end(), monitor)? {
+                    Ok(candidates) => candidates,
+                    Err(why) => return Ok(Err(Dead::Goal(why))),
+                };
+                for candidate in candidates.iter().take(MOST_FOLLOWED) {
+                    if self.is_redundant && rungs.len() >= ENOUGH {
+                        break;
+                    }
+                    match self.placed(candidate, paths, before) {
+                        Ok(more) => rungs.extend(more),
+                        Err(dead) => failed = Some(farther(failed, dead)),
+                    }
+                }
+            }
+        }
+        if rungs.is_empty() {
+            let none = || Dead::Goal("the arm has no configuration there".into());
+            return Ok(Err(failed.unwrap_or_else(none)));
+        }
+        rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+        rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
+        rungs.truncate(MOST_RUNGS);
+        Ok(Ok(rungs))
+    }
+
+    /// Configurations at a pose, those nearest to `reference` first; why there are none.
+    fn configurations(
+        &self,
+        pose: &Pose,
+        reference: &[f64],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Point>, crate::message::Message>> {
+        let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
+        let options = AllOptions { each, redundancy: REDUNDANCY, ..AllOptions::default() };
+        let found = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
+        if found.solutions.is_empty() {
+            return Ok(Err(found.message()));
+        }
+        Ok(Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect()))
+    }
+
+    /// The rungs of one configuration at the start of a block, at the whole turns that suit each of the rungs before.
+    fn placed(&mut self, candidate: &[f64], paths: &[&ToolPath], before: &[Rung]) -> Result<Vec<Rung>, Dead> {
+        if self.is_redundant {
+            let mut q = Point::from_slice(candidate);
+            let bounds = Bounds::from_ranges(self.ranges());
+            bring_near(self.robot, &bounds, before[0].end(), &mut q);
+            let tracks = self.tracks(&q, paths)?;
+            return Ok(vec![self.after(before, q, tracks)]);
+        }
+        let tracks = self.follow_all(candidate, paths)?;
+        let mut rungs: Vec<Rung> = vec![];
+        for rung in before {
+            let turns = self
+                .turns(candidate, &tracks, rung.end())
+                .map_err(|(joint, value)| self.beyond(&tracks, joint, value))?;
+            let moved = |values: &[f64]| values.iter().zip(&turns).map(|(q, turn)| q + turn).collect::<Point>();
+            let q = moved(tracks.first().map_or(candidate, |track| track.row(0)));
+            if rungs.iter().all(|known| largest_difference(&known.q, &q) > SAME) {
+                let n = self.robot.dof();
+                let tracks = tracks.iter().map(|track| Track {
+                    knots: track.knots.clone(),
+                    rows: track.rows.chunks_exact(n).flat_map(&moved).collect(),
+                });
+                let tracks = tracks.collect();
+                rungs.push(self.after(before, q, tracks));
+            }
+        }
+        Ok(rungs)
+    }
+
+    /// Follows all paths from `q`, and checks limits.
+    fn tracks(&mut self, q: &[f64], paths: &[&ToolPath]) -> Result<Vec<Track>, Dead> {
+        let tracks = self.follow_all(q, paths)?;
+        for joint in 0..self.robot.dof() {
+            let [lowest, highest] = range(q, &tracks, joint);
+            if let Some(value) = self.excess(joint, [lowest, highest]) {
+                return Err(self.beyond(&tracks, joint, value));
+            }
+        }
+        Ok(tracks)
+    }
+
+    fn follow_all(&mut self, q: &[f64], paths: &[&ToolPath]) -> Result<Vec<Track>, Dead> {
+        let mut tracks: Vec<Track> = Vec::with_capacity(paths.len());
+        for (i, path) in paths.iter().enumerate() {
+            let from = tracks.last().map_or(q, Track::end).to_vec();
+            let lost = |Lost { at }| Dead::Path { path: i, at, cause: Cause::OutOfReach };
+            tracks.push(self.follower.follow(path, &from).map_err(lost)?);
+        }
+        match self.blocked(q, &tracks) {
+            None => Ok(tracks),
+            Some(dead) => Err(dead),
+        }
+    }
+
+    /// The first knot at which something is in the way.
+    fn blocked(&self, q: &[f64], tracks: &[Track]) -> Option<Dead> {
+        if self.around.is_free() {
+            return None;
+        }
+        if tracks.is_empty() {
+            return self.around.fault_at(q).map(|fault| Dead::Goal(fault.into()));
+        }
+        tracks.iter().enumerate().find_map(|(path, track)| {
+            let at = |(i, at): (usize, &f64)| {
+                let fault = self.around.fault_at(track.row(i))?;
+                Some(Dead::Path { path, at: *at, cause: Cause::Blocked(fault) })
+            };
+            track.knots.iter().enumerate().find_map(at)
+        })
+    }
+
+    /// Whole turns of each joint (rad) with which a block stays inside the limits, as near to `reference` at its start as possible; the
+    /// joint and its value where none do.
+    fn turns(&self, q: &[f64], tracks: &[Track], reference: &[f64]) -> Result<Point, (usize, f64)> {
+        let start = tracks.first().map_or(q, |track| track.row(0));
+        let of_joint = |joint: usize| {
+            let ends = range(start, tracks, joint);
+            let Some(period) = self.robot.turn_period(joint) else {
+                return self.excess(joint, ends).map_or(Ok(0.0), |value| Err((joint, value)));
+            };
+            let [lower, upper] = [self.limits.lower[joint], self.limits.upper[joint]];
+            let rounding = limit_rounding(lower, upper);
+            let (fewest, most) =
+                (((lower - rounding - ends[0]) / period).ceil(), ((upper + rounding - ends[1]) / period).floor());
+            if fewest > most {
+                let value = self.excess(joint, ends).unwrap_or(ends[1]);
+                return Err((joint, value));
+            }
+            Ok(((reference[joint] - start[joint]) / period).round().clamp(fewest, most) * period)
+        };
+        (0..self.robot.dof()).map(of_joint).collect()
+    }
+
+    /// The end of this range that is farther beyond the limits of a joint.
+    fn excess(&self, joint: usize, [lowest, highest]: [f64; 2]) -> Option<f64> {
+        let (lower, upper) = (self.limits.lower[joint], self.limits.upper[joint]);
+        let (below, above) = (lower - lowest, highest - upper);
+        (below.max(above) > limit_rounding(lower, upper)).then_some(if below > above { lowest } else { highest })
+    }
+
+    /// Where on the paths a joint first leaves its limits.
+    fn beyond(&self, tracks: &[Track], joint: usize, value: f64) -> Dead {
+        let cause = || Cause::Limit { joint, value };
+        for (path, track) in tracks.iter().enumerate() {
+            for (i, at) in track.knots.iter().enumerate() {
+                let q = track.row(i)[joint];
+                if self.excess(joint, [q, q]).is_some() {
+                    return Dead::Path { path, at: *at, cause: cause() };
+                }
+            }
+        }
+        match tracks.last() {
+            None => Dead::Goal("a joint would be outside its limits".into()),
+            Some(last) => Dead::Path { path: tracks.len() - 1, at: last.knots[last.knots.len() - 1], cause: cause() },
+        }
+    }
+
+    /// A rung after the quickest of those `before`.
+    fn after(&self, before: &[Rung], q: Point, tracks: Vec<Track>) -> Rung {
+        let q = tracks.first().map_or(q, |track| Point::from_slice(track.row(0)));
+        let total = |rung: &Rung| rung.cost + self.joint_time(rung.end(), &q);
+        let costs = before.iter().map(total).enumerate();
+        let (index, cost) = costs.min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((0, 0.0));
+        let along: f64 = tracks.iter().map(|track| self.track_time(track)).sum();
+        Rung { q, tracks, cost: cost + along, before: index }
+    }
+
+    /// Least time (s) of a joint move from rest to rest.
+    fn joint_time(&self, from: &[f64], to: &[f64]) -> f64 {
+        let time = |joint: usize| {
+            let way = (to[joint] - from[joint]).abs();
+            let (v, a) = (self.limits.velocity[joint], self.limits.acceleration[joint]);
+            if way * a < v * v { 2.0 * (way / a).sqrt() } else { way / v + v / a }
+        };
+        (0..self.robot.dof()).map(time).fold(0.0, f64::max)
+    }
+
+    /// Least time (s) along a track at full joint speeds.
+    fn track_time(&self, track: &Track) -> f64 {
+        let between = |i: usize| {
+            let pairs = track.row(i).iter().zip(track.row(i + 1)).zip(&self.limits.velocity);
+            pairs.map(|((from, to), v)| (to - from).abs() / v).fold(0.0, f64::max)
+        };
+        (0..track.knots.len() - 1).map(between).sum()
+    }
+
+    fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied())
+    }
+}
+
+/// Smallest and largest value of a joint along tracks that begin at `q`.
+fn range(q: &[f64], tracks: &[Track], joint: usize) -> [f64; 2] {
+    let rows = tracks.iter().flat_map(|track| track.rows.chunks_exact(q.len()));
+    rows.map(|row| row[joint]).fold([q[joint]; 2], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// Of two reasons, the one that comes later on the way.
+fn farther(known: Option<Dead>, found: Dead) -> Dead {
+    let place = |dead: &Dead| match dead {
+        Dead::Goal(_) => (0, 0.0),
+        Dead::Path { path, at, .. } => (*path + 1, *at),
+    };
+    match known {
+        Some(known) if place(&known) >= place(&found) => known,
+        _ => found,
+    }
+}

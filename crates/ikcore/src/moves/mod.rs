@@ -1,0 +1,35 @@
+//! Programs of moves: joint moves, lines and arcs of the tip, waits, and blends between them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `program` | [`Move`]s as data, and their checks |
+//! | `around` | obstacles, and what is kept on the way |
+//! | `leg`, `corner`, `tool_path` | lines and arcs by their length, rounded corners, the path from stop to stop |
+//! | `outline` | a program as steps from rest to rest |
+//! | `follower` | joint positions along a path, by Newton's method and splines |
+//! | `ladder` | configurations for the whole program |
+//! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
+//! | `timing` | the fastest motion at the speed asked for |
+//! | `report` | what slows a move, and when |
+//! | `assembly` | the motion of all steps |
+//! | `moves_options`, `plan_moves` | [`plan_moves()`], the call |
+
+mod around;
+mod assembly;
+mod corner;
+mod follower;
+mod joint_corner;
+mod ladder;
+mod leg;
+mod moves_options;
+mod outline;
+mod plan_moves;
+mod program;
+mod report;
+mod run;
+mod timing;
+mod tool_path;
+
+pub use moves_options::MovesOptions;
+pub use plan_moves::plan_moves;
+pub use program::{JointGoal, Move, MoveKind};

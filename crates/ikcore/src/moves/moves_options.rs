@@ -1,0 +1,21 @@
+//! Options of the planner of programs.
+
+use crate::constraint::Keep;
+use crate::limits::Limits;
+use crate::obstacle::Surroundings;
+use crate::solver::Stop;
+
+/// Options of [`plan_moves`](super::plan_moves()).
+#[derive(Debug, Clone, Default)]
+pub struct MovesOptions {
+    /// What the motion keeps clear of. By default nothing is checked.
+    pub surroundings: Surroundings,
+    /// What holds at every instant of the motion.
+    pub keeps: Vec<Keep>,
+    /// Limits to keep. `None` means the robot's.
+    pub limits: Option<Limits>,
+    /// Budget of each search for a joint move among obstacles. `None` means that of `plan_point_to_point`.
+    pub stop: Option<Stop>,
+    /// Seed of the random draws; the same seed gives the same bits.
+    pub seed: u64,
+}

@@ -1,0 +1,129 @@
+//! A program of moves, as data, and its checks.
+
+use crate::error::{Error, Result, require_finite, require_not_negative, require_positive};
+use crate::math::{Pose, pose};
+use crate::robot::Robot;
+
+/// Longest wait (s), as for pauses between motions.
+const LONGEST_WAIT: f64 = 1e6;
+
+/// One move of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Move {
+    /// What the arm does.
+    pub kind: MoveKind,
+    /// Radius (m) about the end of the move inside which the motion may round the corner to the next move; with zero it stops there.
+    pub blend: f64,
+    /// Name in messages and reports.
+    pub name: Option<String>,
+}
+
+/// Kinds of moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MoveKind {
+    /// All joints together to a goal, as fast as the limits allow.
+    Joints(JointGoal),
+    /// The tip along a straight line; its orientation turns uniformly with the length.
+    Line {
+        /// Pose at the end.
+        pose: Pose,
+        /// Speed of the tip (m/s). `None`: as fast as the limits allow.
+        speed: Option<f64>,
+    },
+    /// The tip along an arc of a circle; its orientation turns uniformly with the length.
+    Arc {
+        /// A point (m) that the arc passes through.
+        via: [f64; 3],
+        /// Pose at the end.
+        pose: Pose,
+        /// Angle (rad) after which the arc ends, in place of the position of `pose`; one turn is a full circle.
+        angle: Option<f64>,
+        /// Speed of the tip (m/s). `None`: as fast as the limits allow.
+        speed: Option<f64>,
+    },
+    /// Rest for this time (s).
+    Wait(f64),
+}
+
+/// Where a joint move ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum JointGoal {
+    /// At a configuration (n,) (rad, m).
+    Configuration(Vec<f64>),
+    /// At a pose of the tip; the planner chooses the configuration.
+    Pose(Pose),
+}
+
+impl Move {
+    /// This move, without blend and name.
+    pub fn new(kind: MoveKind) -> Self {
+        Self { kind, blend: 0.0, name: None }
+    }
+
+    /// Words for move `index` of a program, counted from 0.
+    pub(super) fn named(&self, index: usize) -> String {
+        match &self.name {
+            None => format!("move {index}"),
+            Some(name) => format!("move {index} '{name}'"),
+        }
+    }
+
+    /// Whether the tip follows a curve.
+    pub(super) fn is_cartesian(&self) -> bool {
+        matches!(self.kind, MoveKind::Line { .. } | MoveKind::Arc { .. })
+    }
+
+    /// Speed of the tip that is asked for (m/s).
+    pub(super) fn speed(&self) -> Option<f64> {
+        match self.kind {
+            MoveKind::Line { speed, .. } | MoveKind::Arc { speed, .. } => speed,
+            MoveKind::Joints(_) | MoveKind::Wait(_) => None,
+        }
+    }
+
+    /// Checks numbers and lengths.
+    fn check(&self, named: &str, robot: &Robot) -> Result<()> {
+        require_not_negative(&format!("blend of {named}"), self.blend)?;
+        match &self.kind {
+            MoveKind::Joints(JointGoal::Configuration(q)) => robot.check(&format!("joint positions of {named}"), q)?,
+            MoveKind::Joints(JointGoal::Pose(goal)) | MoveKind::Line { pose: goal, .. } => {
+                pose::checked(&format!("pose of {named}"), *goal)?;
+            }
+            MoveKind::Arc { via, pose: goal, angle, .. } => {
+                require_finite(format!("via of {named}"), via, |i| format!("entry {i}"))?;
+                pose::checked(&format!("pose of {named}"), *goal)?;
+                angle.map_or(Ok(()), |angle| require_positive(&format!("angle of {named}"), angle))?;
+            }
+            MoveKind::Wait(seconds) if (0.0..=LONGEST_WAIT).contains(seconds) => {}
+            MoveKind::Wait(seconds) => {
+                let what = format!("time of {named}");
+                return Err(Error::out_of_range(what, format!("from 0 to {LONGEST_WAIT} s"), *seconds));
+            }
+        }
+        self.speed().map_or(Ok(()), |speed| require_positive(&format!("speed of {named}"), speed))
+    }
+}
+
+/// Checks each move by itself, and that no blend leads into a wait.
+///
+/// # Errors
+/// [`Error::InvalidMove`] for a program without moves and for a blend before a wait; [`Error::OutOfRange`], [`Error::NotFinite`] and
+/// [`Error::WrongLength`] name the move.
+pub(super) fn check_program(robot: &Robot, moves: &[Move]) -> Result<()> {
+    if moves.is_empty() {
+        let problem = "it has no moves: give at least one".into();
+        return Err(Error::InvalidMove { what: "the program".into(), problem });
+    }
+    for (i, each) in moves.iter().enumerate() {
+        each.check(&each.named(i), robot)?;
+        if let (true, Some(Move { kind: MoveKind::Wait(_), .. })) = (each.blend > 0.0, moves.get(i + 1)) {
+            let next = moves[i + 1].named(i + 1);
+            let problem = format!(
+                "its blend of {} m leads into {next}, a wait, before which the arm stops: give no blend",
+                each.blend
+            );
+            return Err(Error::InvalidMove { what: each.named(i), problem: problem.into() });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! What the arm does from one stop to the next: joint moves and paths of the tip, joined by rounded corners.
+
+use super::joint_corner::JointCorner;
+use super::tool_path::ToolPath;
+use crate::error::Result;
+use crate::math::cubic_spline::SplineEnds;
+use crate::math::vector::distance;
+use crate::objective::Point;
+use crate::robot::Robot;
+use crate::timing::{ConstantLimits, JointPath};
+
+/// Intervals of a corner at first, and the most.
+const INTERVALS: usize = 24;
+const MOST_INTERVALS: usize = 96;
+
+/// Intervals of a straight line in joint space.
+const LINE_INTERVALS: usize = 6;
+
+/// Largest distance of the tip from its path (m) beside a corner.
+const ACCURACY: f64 = 5e-6;
+
+/// A part of a run.
+#[derive(Debug, Clone)]
+pub(super) struct RunPart<'a> {
+    /// Index of its move, of the first for a path of the tip.
+    pub index: usize,
+    /// The path of the tip; `None` for a joint move.
+    pub tool_path: Option<&'a ToolPath>,
+    /// The joint path.
+    pub path: JointPath,
+}
+
+/// Where a part of a run is in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    /// Parameter of the run at which it begins.
+    pub begin: f64,
+    /// Parameters of the part between which it is followed.
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Window {
+    /// Parameter of the run where it ends.
+    pub fn end(&self) -> f64 {
+        self.begin + self.to - self.from
+    }
+}
+
+/// A run: one joint path through all its parts.
+#[derive(Debug)]
+pub(super) struct Run<'a> {
+    pub parts: Vec<RunPart<'a>>,
+    pub windows: Vec<Window>,
+    pub path: JointPath,
+}
+
+impl<'a> Run<'a> {
+    /// The run of one part.
+    pub fn of(part: RunPart<'a>) -> Self {
+        let path = part.path.clone();
+        let [from, to] = [path.breaks()[0], path.breaks()[path.pieces()]];
+        Self { parts: vec![part], windows: vec![Window { begin: from, from, to }], path }
+    }
+
+    /// The run of several parts, whose corners are rounded within `radii` (m); `None` where that is not found.
+    ///
+    /// # Errors
+    /// None in practice: the parts differ.
+    pub fn rounded(
+        robot: &Robot,
+        limits: &ConstantLimits,
+        parts: &[RunPart<'a>],
+        radii: &[f64],
+    ) -> Result<Option<Self>> {
+        let middle = |path: &JointPath| 0.5 * (path.breaks()[0] + path.breaks()[path.pieces()]);
+        let mut corners = vec![];
+        for (i, radius) in radii.iter().enumerate() {
+            let paths = [&parts[i].path, &parts[i + 1].path];
+            let first = if i > 0 { middle(paths[0]) } else { paths[0].breaks()[0] };
+            let last = if i + 1 < radii.len() { middle(paths[1]) } else { paths[1].breaks()[paths[1].pieces()] };
+            let Some(corner) = JointCorner::between(robot, limits, paths, [first, last], *radius) else {
+                return Ok(None);
+            };
+            corners.push(corner);
+        }
+        let mut intervals = INTERVALS;
+        while intervals <= MOST_INTERVALS {
+            let run = Self::through(parts, &corners, intervals)?;
+            if run.is_accurate(robot) {
+                return Ok(Some(run));
+            }
+            intervals *= 2;
+        }
+        Ok(None)
+    }
+
+    /// The spline through the knots of all parts, and `intervals` of each corner.
+    fn through(parts: &[RunPart<'a>], corners: &[JointCorner], intervals: usize) -> Result<Self> {
+        let names = parts[0].path.joints().to_vec();
+        let (mut knots, mut rows, mut speeds, mut windows) = (vec![], vec![], vec![], vec![]);
+        let mut q = Point::from_elem(0.0, names.len());
+        let mut at = 0.0;
+        for (i, part) in parts.iter().enumerate() {
+            let path = &part.path;
+            let [start, end] = [path.breaks()[0], path.breaks()[path.pieces()]];
+            let from = if i > 0 { corners[i - 1].entered } else { start };
+            let to = corners.get(i).map_or(end, |corner| corner.left);
+            let window = Window { begin: at, from, to };
+            let mut before = from;
+            for s in knots_of(part, from, to) {
+                path.position(s, &mut q);
+                if s > from {
+                    speeds.push(path.largest_speed(path.locate(0.5 * (before + s)).0));
+                }
+                before = s;
+                if i == 0 || s > from {
+                    knots.push(at + s - from);
+                    rows.extend_from_slice(&q);
+                }
+            }
+            at = window.end();
+            windows.push(window);
+            if let Some(corner) = corners.get(i) {
+                for k in 1..=intervals {
+                    let fraction = k as f64 / intervals as f64;
+                    corner.position(fraction, &mut q);
+                    knots.push(at + fraction * corner.length);
+                    rows.extend_from_slice(&q);
+                    speeds.push(f64::INFINITY);
+                }
+                at += corner.length;
+            }
+        }
+        let path = JointPath::spline(names, &rows, Some(&knots), SplineEnds::NotAKnot)?;
+        Ok(Self { parts: parts.to_vec(), windows, path: path.with_speeds(speeds) })
+    }
+
+    /// Whether the tip stays on its paths between knots.
+    fn is_accurate(&self, robot: &Robot) -> bool {
+        let mut q = Point::from_elem(0.0, robot.dof());
+        self.parts.iter().zip(&self.windows).all(|(part, window)| {
+            let Some(tool_path) = part.tool_path else { return true };
+            self.path.breaks().windows(2).all(|ends| {
+                let s = 0.5 * (ends[0] + ends[1]);
+                if s < window.begin || s > window.end() {
+                    return true;
+                }
+                self.path.position(s, &mut q);
+                let target = tool_path.pose(window.from + s - window.begin);
+                distance(&robot.tip_position(&q), &target.origin) <= ACCURACY
+            })
+        })
+    }
+}
+
+/// Parameters of a part at which a run takes it over, from `from` to `to`.
+fn knots_of(part: &RunPart<'_>, from: f64, to: f64) -> Vec<f64> {
+    let mut knots = vec![from];
+    if part.tool_path.is_some() {
+        let spare = 1e-3 * (to - from) / part.path.pieces() as f64;
+        knots.extend(part.path.breaks().iter().copied().filter(|s| *s > from + spare && *s < to - spare));
+    } else {
+        knots.extend((1..LINE_INTERVALS).map(|i| from + (to - from) * i as f64 / LINE_INTERVALS as f64));
+    }
+    if to > from {
+        knots.push(to);
+    }
+    knots
+}

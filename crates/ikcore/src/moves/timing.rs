@@ -1,0 +1,107 @@
+//! The fastest motion along the path of each step.
+
+use crate::error::Result;
+use crate::objective::Point;
+use crate::timing::{ConstantLimits, JointPath, TimingOptions, time};
+use crate::trajectory::Trajectory;
+
+/// Excess over a speed asked for, and shortfall, that count as none.
+const FASTER: f64 = 1e-6;
+const SLOWER: f64 = 3e-4;
+
+/// Part of the speed asked for from which on a shortfall may come from the timing; below, limits keep the speed down.
+const NEARLY: f64 = 0.99;
+
+/// Grid points of a timing, and the least number for each piece of the path. Refining the grid would gain a thousandth of the duration.
+const GRIDPOINTS: usize = 240;
+const FOR_EACH_PIECE: usize = 2;
+
+/// Samples in each segment of a trajectory.
+const SAMPLES: usize = 2;
+
+/// Newton steps onto the path at each sample.
+const STEPS: usize = 2;
+
+/// A motion along a joint path at a time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PathTime {
+    /// Time (s).
+    pub t: f64,
+    /// Path parameter, and its rate.
+    pub s: f64,
+    pub rate: f64,
+}
+
+/// The fastest motion along `path` that keeps the largest path speeds of its pieces.
+///
+/// With jerk limits the whole motion is at last slowed by a little, and with it the speeds; so these are then asked for once more.
+///
+/// # Errors
+/// Those of `time_optimal`.
+pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Trajectory> {
+    let asked: Vec<f64> = (0..path.pieces()).map(|piece| path.largest_speed(piece)).collect();
+    let gridpoints = Some(GRIDPOINTS.max(FOR_EACH_PIECE * path.pieces()));
+    let options = TimingOptions { gridpoints, ..TimingOptions::default() };
+    let motion = time(path, limits, &options)?;
+    if !limits.limit_jerk() || asked.iter().all(|speed| speed.is_infinite()) {
+        return Ok(motion);
+    }
+    let (motion, reached) = at_most_asked(path, &asked, motion)?;
+    if !(NEARLY..1.0 - SLOWER).contains(&reached) {
+        return Ok(motion);
+    }
+    let speeds = asked.iter().map(|speed| speed / reached).collect();
+    let again = time(&path.clone().with_speeds(speeds), limits, &options)?;
+    let (again, _) = at_most_asked(path, &asked, again)?;
+    Ok(if again.duration() < motion.duration() { again } else { motion })
+}
+
+/// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
+fn at_most_asked(path: &JointPath, asked: &[f64], motion: Trajectory) -> Result<(Trajectory, f64)> {
+    let reached = largest_ratio(path, asked, &motion)?;
+    Ok((if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion }, reached))
+}
+
+/// Largest path speed relative to the one asked for.
+fn largest_ratio(path: &JointPath, asked: &[f64], motion: &Trajectory) -> Result<f64> {
+    let ratio = |at: &PathTime| at.rate / asked[path.locate(at.s).0];
+    Ok(path_times(path, motion)?.iter().map(ratio).fold(0.0, f64::max))
+}
+
+/// Path parameters of a motion along a path from rest to rest, at the knots of the motion and between them.
+///
+/// # Errors
+/// None in practice: the joints are the same.
+pub(super) fn path_times(path: &JointPath, motion: &Trajectory) -> Result<Vec<PathTime>> {
+    let n = path.joints().len();
+    let [mut q, mut qd, mut qdd, mut position, mut slope] = [(); 5].map(|()| Point::from_elem(0.0, n));
+    let [first, last] = [path.breaks()[0], path.breaks()[path.pieces()]];
+    let mut times = vec![PathTime { t: 0.0, s: first, rate: 0.0 }];
+    for ends in motion.knots().windows(2) {
+        for k in 1..=SAMPLES {
+            let t = ends[0] + (ends[1] - ends[0]) * k as f64 / SAMPLES as f64;
+            let before = times[times.len() - 1];
+            motion.at(t, &mut q, &mut qd, &mut qdd)?;
+            let (mut s, mut rate) = (before.s + before.rate * (t - before.t), before.rate);
+            for _ in 0..STEPS {
+                path.position_and_slope(s, &mut position, &mut slope);
+                let squared: f64 = slope.iter().map(|slope| slope * slope).sum();
+                if squared == 0.0 {
+                    break;
+                }
+                let ahead: f64 = q.iter().zip(&position).zip(&slope).map(|((q, p), slope)| (q - p) * slope).sum();
+                rate = qd.iter().zip(&slope).map(|(qd, slope)| qd * slope).sum::<f64>() / squared;
+                s = (s + ahead / squared).clamp(before.s, last);
+            }
+            times.push(PathTime { t, s, rate });
+        }
+    }
+    Ok(times)
+}
+
+/// Time at which a motion passes the path parameter `s`, between samples.
+pub(super) fn time_at(times: &[PathTime], s: f64) -> f64 {
+    let after = times.partition_point(|at| at.s < s).min(times.len() - 1);
+    let (from, to) = (times[after.saturating_sub(1)], times[after]);
+    if to.s > from.s { from.t + (to.t - from.t) * ((s - from.s) / (to.s - from.s)).clamp(0.0, 1.0) } else { to.t }
+}

@@ -1,0 +1,125 @@
+//! `MoveReport` and `SpeedBound`.
+
+use ikcore::planning::{MoveReport, SpeedBound};
+use ikcore::stored::{from_bytes, to_bytes};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::error::raise;
+use crate::hash::content_hash;
+use crate::pickling::{self, Reduced};
+
+/// How a move of a program came out.
+#[pyclass(name = "MoveReport", module = "beetle_ik", frozen, eq)]
+#[derive(Debug, PartialEq)]
+pub struct PyMoveReport(pub MoveReport);
+
+#[pymethods]
+impl PyMoveReport {
+    /// Name of the move, or None.
+    #[getter]
+    fn name(&self) -> Option<&str> {
+        self.0.name.as_deref()
+    }
+
+    /// When it starts (s). A blend belongs to its two moves by halves of its length.
+    #[getter]
+    fn start(&self) -> f64 {
+        self.0.start
+    }
+
+    /// When it ends (s).
+    #[getter]
+    fn end(&self) -> f64 {
+        self.0.end
+    }
+
+    /// Largest speed of the tip on it (m/s), between its blends; of a turn on the spot 0.1 m for each radian.
+    #[getter]
+    fn speed(&self) -> f64 {
+        self.0.speed
+    }
+
+    /// What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in
+    /// order of time; empty where it had that speed throughout, and where none is asked for.
+    #[getter]
+    fn bound_by<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.bound_by.iter().cloned().map(PySpeedBound))
+    }
+
+    fn __repr__(&self) -> String {
+        let MoveReport { name, start, end, speed, bound_by } = &self.0;
+        let name = name.as_ref().map_or_else(String::new, |name| format!(" '{name}'"));
+        let bound: Vec<String> = bound_by.iter().map(words).collect();
+        let bound = if bound.is_empty() { String::new() } else { format!(", bound by {}", bound.join(", ")) };
+        format!("<MoveReport{name}: {start:.3} to {end:.3} s, up to {speed:.4} m/s{bound}>")
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("report of a move", &self.0))?,))
+    }
+
+    /// Restores a pickled value.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("report of a move", bytes).map(Self).map_err(raise)
+    }
+}
+
+/// A limit that keeps the tip below the speed asked for.
+#[pyclass(name = "SpeedBound", module = "beetle_ik", frozen, eq)]
+#[derive(Debug, Clone, PartialEq)]
+pub struct PySpeedBound(pub SpeedBound);
+
+#[pymethods]
+impl PySpeedBound {
+    /// The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed".
+    #[getter]
+    fn limit(&self) -> &str {
+        &self.0.limit
+    }
+
+    /// Name of the joint, or of the tip.
+    #[getter]
+    fn of(&self) -> &str {
+        &self.0.of
+    }
+
+    /// From when (s).
+    #[getter]
+    fn start(&self) -> f64 {
+        self.0.start
+    }
+
+    /// Until when (s).
+    #[getter]
+    fn end(&self) -> f64 {
+        self.0.end
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<SpeedBound: {}>", words(&self.0))
+    }
+
+    fn __hash__(&self) -> u64 {
+        content_hash(self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("bound of a speed", &self.0))?,))
+    }
+
+    /// Restores a pickled value.
+    #[staticmethod]
+    fn _restore(bytes: &[u8]) -> PyResult<Self> {
+        from_bytes("bound of a speed", bytes).map(Self).map_err(raise)
+    }
+}
+
+fn words(SpeedBound { limit, of, start, end }: &SpeedBound) -> String {
+    format!("{limit} of '{of}' from {start:.3} to {end:.3} s")
+}

@@ -1,0 +1,96 @@
+//! `plan_moves`.
+
+use ikcore::obstacle::Surroundings;
+use ikcore::planning::{self, MovesOptions};
+use pyo3::prelude::*;
+
+use super::moves::read_moves;
+use super::plan::PyPlan;
+use crate::convert::count;
+use crate::joint_order::joint_vector;
+use crate::keep::read_keeps;
+use crate::limits::{PyLimits, Sampling, limits_of_call};
+use crate::monitor::watched;
+use crate::obstacle::GivenObstacles;
+use crate::python_calls;
+use crate::robot::PyRobot;
+use crate::solver::PyStop;
+use crate::wording::said;
+
+/// Plans the motion of a program of moves, from rest at `start_q` to rest.
+///
+/// Configurations are chosen for the program as a whole, so that no joint meets its limit in the middle of a move: branches and whole
+/// turns, and the posture of a redundant arm. Lines and arcs are kept within 10 micrometres, a blend stays within its radius, and the
+/// speed asked for is kept between blends to 0.1 % wherever the limits allow; `Plan.moves` says where they do not.
+///
+/// With obstacles, joint moves find a way around them, and configurations are chosen whose paths are clear; the whole motion is
+/// certified between samples too.
+///
+/// Args:
+///     robot: the arm.
+///     moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
+///     start_q: joint positions (n,) at the start.
+///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
+///     obstacles: a `Scene` or a list of obstacles to keep clear of.
+///     margin: least distance from obstacles and between links (m); None: 1 mm.
+///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
+///     keep: what holds at every instant of the motion, a `Keep` or a list of them.
+///     stop: budgets of the search for each joint move among obstacles; None: as for `plan_point_to_point`.
+///     seed: seed of the random draws; the same seed gives the same bits.
+///     progress: True shows a progress bar; a callable is called with (done, total).
+///
+/// Returns:
+///     A `Plan`, whose `moves` has a `MoveReport` for each move.
+///
+/// Raises:
+///     InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
+///         arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
+///         collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
+///         bodies.
+///     LimitError: limits that contradict each other; a start or joint positions outside them.
+///     UnsupportedLimit: limits that vary in time, or no acceleration limits.
+///
+/// For example:
+///
+///     >>> arm = bik.Robot.named("ur5e")
+///     >>> q = [0.0, -1.5, 1.8, -1.9, -1.57, 0.0]
+///     >>> down = arm.fk(q)
+///     >>> down[2, 3] -= 0.1
+///     >>> program = [bik.moves.Line(down, speed=0.05, name="down"), bik.moves.Wait(0.5)]
+///     >>> plan = bik.plan_moves(arm, program, start_q=q, limits=bik.Limits(acceleration=5.0))
+///     >>> plan.moves[0]
+///     <MoveReport 'down': 0.000 to 2.006 s, up to 0.0500 m/s, bound by ...>
+#[pyfunction]
+#[pyo3(signature = (robot, moves, *, start_q, limits=None, obstacles=None, margin=None, self_collision=None, keep=None, stop=None,
+                    seed=0, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn plan_moves(
+    py: Python<'_>,
+    robot: &Bound<'_, PyRobot>,
+    moves: &Bound<'_, PyAny>,
+    start_q: &Bound<'_, PyAny>,
+    limits: Option<&PyLimits>,
+    obstacles: Option<&Bound<'_, PyAny>>,
+    margin: Option<f64>,
+    self_collision: Option<bool>,
+    keep: Option<&Bound<'_, PyAny>>,
+    stop: Option<&PyStop>,
+    seed: i128,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyPlan> {
+    let arm = robot.get().core.clone();
+    let moves = read_moves(moves)?;
+    let start = joint_vector(&arm, "start_q", start_q)?;
+    let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
+    let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
+    let options = MovesOptions {
+        surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
+        keeps: read_keeps(robot.get(), keep)?,
+        limits: resolved,
+        stop: stop.map(PyStop::core),
+        seed: count("seed", seed)?,
+    };
+    let plan = watched(py, progress, |watcher| planning::plan_moves(&arm, &moves, &start, &options, watcher))?;
+    python_calls::log(py, "plan_moves", &said(&plan.message()))?;
+    PyPlan::new(plan, robot, in_force, given.tuple)
+}

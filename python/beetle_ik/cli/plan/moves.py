@@ -1,0 +1,159 @@
+"""`beetle-ik plan moves`: plans a program of moves from a file."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from ... import InvalidInputError, Scene, plan_moves, pose
+from ...moves import Arc, Joints, Line, Move, Wait
+from ..options import (
+    Acceleration,
+    AsJson,
+    BaseLink,
+    Jerk,
+    LinkRadius,
+    Margin,
+    RobotName,
+    SceneFile,
+    Seed,
+    TipLink,
+    TipSpeed,
+    Trusted,
+    UrdfFile,
+    Velocity,
+    load_robot,
+    numbers,
+)
+from .planned import Animated, Budget, Out, options, report
+
+_POSE = 6
+_KEYS: dict[str, tuple[set[str], set[str]]] = {
+    "joints": ({"to"}, {"blend", "name"}),
+    "line": ({"to"}, {"speed", "blend", "name"}),
+    "arc": ({"via", "to"}, {"speed", "blend", "angle", "name"}),
+    "wait": ({"seconds"}, {"name"}),
+}
+
+
+def moves(
+    program: Annotated[
+        Path,
+        typer.Argument(
+            help='A JSON file: a list of moves, such as {"move": "line", "to": [0.4, 0, 0.2, 0, 0, 0], "speed": 0.05}.'
+        ),
+    ],
+    robot: RobotName = None,
+    *,
+    start_q: Annotated[str, typer.Option(metavar="Q1,Q2,...", help="Joint positions at the start.")],
+    scene: SceneFile = None,
+    margin: Margin = None,
+    link_radius: LinkRadius = None,
+    velocity: Velocity = None,
+    acceleration: Acceleration = None,
+    jerk: Jerk = None,
+    tip_speed: TipSpeed = None,
+    max_evaluations: Budget = None,
+    seed: Seed = 0,
+    out: Out = None,
+    animation: Animated = False,
+    urdf: UrdfFile = None,
+    tip: TipLink = None,
+    base: BaseLink = None,
+    trusted: Trusted = False,
+    as_json: AsJson = False,
+) -> None:
+    """Plan a program of joint moves, lines, arcs and waits.
+
+    Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or {"q": [...]}, joint
+    positions; "via" of an arc is a point.
+    """
+    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
+    read = read_program(program)
+    chosen = options(velocity, acceleration, jerk, tip_speed, max_evaluations)
+    obstacles = None if scene is None else Scene.load(scene)
+    report(
+        lambda: plan_moves(
+            arm,
+            read,
+            start_q=numbers("--start-q", start_q),
+            obstacles=obstacles,
+            margin=margin,
+            seed=seed,
+            progress=not as_json,
+            **chosen,
+        ),
+        "moves",
+        seed,
+        out,
+        animation,
+        as_json,
+    )
+
+
+def read_program(file: Path) -> list[Move]:
+    """Returns the moves of a JSON file; errors name the move, counted from 0, and the key."""
+    try:
+        given = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InvalidInputError(f"{file}: not a readable JSON file: {error}") from error
+    if not isinstance(given, list):
+        raise InvalidInputError(f"{file}: expected a list of moves, got {type(given).__name__}")
+    return [_move(f"{file}: move {i}", each) for i, each in enumerate(given)]
+
+
+def _move(where: str, given: Any) -> Move:
+    kinds = ", ".join(_KEYS)
+    if not isinstance(given, dict):
+        raise InvalidInputError(f"{where}: expected an object with the key 'move', got {given!r}")
+    rest = dict(given)
+    kind = rest.pop("move", None)
+    if kind not in _KEYS:
+        raise InvalidInputError(f"{where}: 'move' must be one of {kinds}, got {kind!r}")
+    needed, allowed = _KEYS[kind]
+    for key in sorted(needed - rest.keys()):
+        raise InvalidInputError(f"{where}: a {kind} needs '{key}'")
+    for key in sorted(rest.keys() - needed - allowed):
+        raise InvalidInputError(f"{where}: unknown key '{key}'; a {kind} takes {', '.join(sorted(needed | allowed))}")
+    for key, value in rest.items():
+        if key == "name" and not isinstance(value, str):
+            raise InvalidInputError(f"{where}: 'name' must be a text, got {value!r}")
+        if key in ("speed", "blend", "angle", "seconds"):
+            _number(where, key, value)
+    made: dict[str, Callable[[], Move]] = {
+        "joints": lambda: Joints(_goal(where, rest.pop("to")), **rest),
+        "line": lambda: Line(_pose(where, rest.pop("to")), **rest),
+        "arc": lambda: Arc(_numbers(where, "via", rest.pop("via"), 3), _pose(where, rest.pop("to")), **rest),
+        "wait": lambda: Wait(rest.pop("seconds"), **rest),
+    }
+    return made[kind]()
+
+
+def _number(where: str, key: str, value: Any) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InvalidInputError(f"{where}: '{key}' must be a number, got {value!r}")
+
+
+def _numbers(where: str, key: str, value: Any, count: int | None) -> np.ndarray:
+    wanted = "numbers" if count is None else f"{count} numbers"
+    if not isinstance(value, list) or (count is not None and len(value) != count):
+        raise InvalidInputError(f"{where}: '{key}' must be a list of {wanted}, got {value!r}")
+    for each in value:
+        _number(where, key, each)
+    return np.array(value, dtype=float)
+
+
+def _pose(where: str, value: Any) -> np.ndarray:
+    place = _numbers(where, "to", value, _POSE)
+    return pose(place[:3], rpy=place[3:])
+
+
+def _goal(where: str, value: Any) -> np.ndarray:
+    if not isinstance(value, dict):
+        return _pose(where, value)
+    if list(value) != ["q"]:
+        raise InvalidInputError(f"{where}: 'to' must be six numbers or an object with the key 'q', got {value!r}")
+    return _numbers(where, "q", value["q"], None)

@@ -1,0 +1,150 @@
+"""Programs of moves, judged at samples of the timed motion by numpy alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import arms
+from ..attack import Attack, BrokenError, Case
+
+Array = NDArray[np.float64]
+SAMPLES = 2000
+OFF_PATH = 1e-5
+SPEED = 1e-3
+ACCELERATION, JERK = 4.0, 80.0
+
+
+def distances(points: Array, start: Array, move: dict[str, Any]) -> Array:
+    """Distances (m,) of points (m, 3) from a line, or from the circle of an arc."""
+    end = start + move["way"]
+    if move["kind"] == "line":
+        way = end - start
+        part = np.clip((points - start) @ way / (way @ way), 0.0, 1.0)
+        return np.linalg.norm(points - start - part[:, None] * way, axis=1)
+    via = start + move["via"]
+    normal = np.cross(via - start, end - start)
+    rows = np.array([via - start, end - start, normal])
+    right = [(via @ via - start @ start) / 2, (end @ end - start @ start) / 2, normal @ start]
+    centre = np.linalg.solve(rows, right)
+    normal = normal / np.linalg.norm(normal)
+    above = (points - centre) @ normal
+    outward = np.linalg.norm(points - centre - above[:, None] * normal, axis=1) - np.linalg.norm(start - centre)
+    return np.hypot(above, outward)
+
+
+class Programs(Attack):
+    """Lines, arcs, waits and joint moves from one configuration on; round numbers, ties and corners of every angle."""
+
+    name = "programs"
+    promise = "Each move of a program is made as asked, within the limits, or refused by its name"
+    page = "moves"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        joints = arms.arm(random, hard, (6, 7))
+        arms.put(joints, random, hard)
+        return {
+            "joints": joints,
+            "moves": [self._drawn(random, hard, len(arms.free(joints))) for _ in range(random.integers(1, 6))],
+            "jerk": bool(random.random() < 0.3),
+        }
+
+    def _drawn(self, random: np.random.Generator, hard: bool, n: int) -> dict[str, Any]:
+        kind = str(random.choice(["line", "line", "arc", "wait", "joints"]))
+        size = float(random.choice([0.01, 0.05, 0.1]))
+        axes = [*np.eye(3), -np.eye(3)[0], np.zeros(3)] if hard else [random.normal(size=3)]
+        way = size * axes[random.integers(len(axes))]
+        return {
+            "kind": kind,
+            "way": tuple(way.tolist()),
+            "via": tuple((0.5 * way + size * axes[random.integers(len(axes))]).tolist()),
+            "turn": float(random.choice([0.0, 0.0, 0.2])),
+            "speed": [None, 0.01, 0.1, 10.0, 0.0][random.integers(5 if hard else 4)],
+            "blend": [0.0, 0.2 * size, 0.5 * size, 2.0 * size][random.integers(4 if hard else 3)],
+            "seconds": float(random.choice([0.0, 0.1])),
+            "q": tuple((0.1 * random.normal(size=n)).tolist()),
+        }
+
+    def program(self, case: Case) -> str:
+        lines = [
+            arms.written(case["joints"]),
+            f"q = np.array({arms.configurations(case['joints'])[0].tolist()!r})",
+            "pose, program = robot.fk(q), []",
+        ]
+        for i, move in enumerate(case["moves"]):
+            blend, name = move["blend"], f"name='m{i}'"
+            if move["kind"] == "wait":
+                lines.append(f"program.append(bik.moves.Wait({move['seconds']!r}, {name}))")
+                continue
+            if move["kind"] == "joints":
+                lines.append(
+                    f"goal = np.clip(q + {move['q']!r}, robot.lower, robot.upper)\npose = robot.fk(goal)\n"
+                    f"program.append(bik.moves.Joints(goal, blend={blend!r}, {name}))"
+                )
+                continue
+            given = f"pose, speed={move['speed']!r}, blend={blend!r}, {name}"
+            via = f"pose[:3, 3] + {move['via']!r}, " if move["kind"] == "arc" else ""
+            lines.append(
+                f"before, pose = pose, pose @ bik.pose((0, 0, 0), rpy=({move['turn']!r}, 0, 0))\n"
+                f"pose[:3, 3] = before[:3, 3] + {move['way']!r}\n"
+                f"program.append(bik.moves.{move['kind'].capitalize()}({via.replace('pose', 'before')}{given}))"
+            )
+        jerk = f", jerk={JERK}" if case["jerk"] else ""
+        lines.append(
+            f"limits = bik.Limits(acceleration={ACCELERATION}{jerk})\n"
+            "plan = bik.plan_moves(robot, program, start_q=q, limits=limits)\n"
+            "reports, motion = plan.moves, plan.trajectory"
+        )
+        return "\n".join(lines)
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        plan, motion, reports = left["plan"], left["motion"], left["reports"]
+        if not plan.success:
+            raise BrokenError("a program that was planned breaks a limit", plan.message)
+        t = np.linspace(0.0, motion.duration, SAMPLES)
+        q, qd, qdd = motion.at(t)
+        lower, upper = arms.bounds(case["joints"])
+        if (q < lower - 1e-9).any() or (q > upper + 1e-9).any():
+            raise BrokenError("a joint is outside its limits", (q.min(axis=0), q.max(axis=0)))
+        if np.abs(qd).max() > 1.0 + 1e-9 or np.abs(qdd).max() > ACCELERATION * (1.0 + 1e-9):
+            raise BrokenError("a joint is faster than its limits", (np.abs(qd).max(), np.abs(qdd).max()))
+        poses, jacobians = arms.kinematics(case["joints"], q)
+        tips = poses[:, :3, 3]
+        speeds = np.linalg.norm(np.einsum("mij,mj->mi", jacobians[:, :3], qd), axis=1)
+        at, before = tips[0], 0.0
+        for i, (move, report) in enumerate(zip(case["moves"], reports, strict=True)):
+            on = (t >= report.start) & (t <= report.end)
+            blend = move["blend"] if i + 1 < len(case["moves"]) else 0.0
+            if move["kind"] == "wait":
+                before = 0.0
+                continue
+            if move["kind"] == "joints":
+                goal = np.clip(arms.configurations(case["joints"])[0] + move["q"], lower, upper)
+                at, before = arms.kinematics(case["joints"], goal[None])[0][0, :3, 3], blend
+                continue
+            end = at + move["way"]
+            clear = on & (np.linalg.norm(tips - at, axis=1) >= before) & (np.linalg.norm(tips - end, axis=1) >= blend)
+            if np.linalg.norm(move["way"]) > 1e-9:
+                off = distances(tips, at, move)[clear].max(initial=0.0)
+                if off > OFF_PATH:
+                    raise BrokenError("a move leaves its path", (i, off))
+            asked = move["speed"]
+            if asked is not None and np.linalg.norm(move["way"]) > 1e-9:
+                said = np.zeros(SAMPLES, bool)
+                for bound in report.bound_by:
+                    said |= (t >= bound.start) & (t <= bound.end)
+                if (speeds[clear] > asked * (1.0 + SPEED)).any():
+                    raise BrokenError("a move is faster than asked for", (i, speeds[clear].max(), asked))
+                if (speeds[clear & ~said] < asked * (1.0 - SPEED)).any():
+                    raise BrokenError("a move is slower than asked for, and nothing says why", (i, asked))
+            at, before = end, blend
+        return SAMPLES
+
+    def judge_refusal(self, case: Case, error: Exception) -> None:
+        if "'m" not in str(error) and "takes no time" not in str(error):
+            raise BrokenError("a program is refused, and no move is named", error)
+
+
+ATTACKS = [Programs()]

@@ -1,0 +1,74 @@
+"""`beetle-ik plan moves`: programs from files, and refused ones by move and key."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from beetle_ik.cli.app import app
+
+HOME = [0.0, -1.5, 1.8, -1.9, -1.57, 0.0]
+DOWN = [3.141592653589793, 0.0, 0.0]
+
+
+def planned(file: Path, program: Any, *more: str) -> Result:
+    file.write_text(json.dumps(program))
+    start = "--start-q=" + ",".join(map(str, HOME))
+    given = ["plan", "moves", str(file), "ur5e", start, "--acceleration-limit", "5", *more]
+    return CliRunner().invoke(app, given)
+
+
+def test_a_program_of_a_file_is_planned(tmp_path: Path) -> None:
+    program = [
+        {"move": "joints", "to": [0.4, -0.1, 0.3, *DOWN], "name": "above"},
+        {"move": "line", "to": [0.4, -0.1, 0.2, *DOWN], "speed": 0.05, "blend": 0.01},
+        {"move": "arc", "via": [0.4, 0.0, 0.25], "to": [0.4, 0.1, 0.2, *DOWN], "speed": 0.1},
+        {"move": "wait", "seconds": 0.5, "name": "grip"},
+        {"move": "joints", "to": {"q": HOME}},
+    ]
+    done = planned(tmp_path / "program.json", program, "--json")
+    answer = json.loads(done.stdout)
+    assert done.exit_code == 0
+    assert [move["name"] for move in answer["moves"]] == ["above", None, None, "grip", None]
+    assert answer["moves"][1]["speed"] == pytest.approx(0.05, rel=1e-3)
+    assert answer["moves"][3]["end"] - answer["moves"][3]["start"] == pytest.approx(0.5)
+    shown = planned(tmp_path / "program.json", program)
+    assert "move 0 'above'" in shown.stdout
+
+
+WRONG: list[tuple[Any, str]] = [
+    ({}, "expected a list of moves, got dict"),
+    ([3], "move 0: expected an object with the key 'move', got 3"),
+    ([{"move": "jump"}], "move 0: 'move' must be one of joints, line, arc, wait, got 'jump'"),
+    ([{"move": "wait", "seconds": 1.0}, {"move": "line"}], "move 1: a line needs 'to'"),
+    (
+        [{"move": "wait", "seconds": 1.0, "sped": 2.0}],
+        "move 0: unknown key 'sped'; a wait takes name, seconds",
+    ),
+    ([{"move": "line", "to": [1.0, 2.0]}], "move 0: 'to' must be a list of 6 numbers, got [1.0, 2.0]"),
+    ([{"move": "wait", "seconds": "1"}], "move 0: 'seconds' must be a number, got '1'"),
+    ([{"move": "wait", "seconds": 1.0, "name": 3}], "move 0: 'name' must be a text, got 3"),
+    (
+        [{"move": "joints", "to": {"p": []}}],
+        "move 0: 'to' must be six numbers or an object with the key 'q', got {'p': []}",
+    ),
+]
+
+
+@pytest.mark.parametrize(("program", "message"), WRONG, ids=[message[:40] for _, message in WRONG])
+def test_wrong_files_are_refused_by_move_and_key(tmp_path: Path, program: Any, message: str) -> None:
+    file = tmp_path / "program.json"
+    done = planned(file, program)
+    assert done.exit_code == 2
+    assert " ".join(done.stderr.split()) == f"Error: {file}: {message}"
+
+
+def test_a_file_that_is_no_json_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "program.json"
+    planned(file, [])
+    file.write_text("{")
+    done = CliRunner().invoke(app, ["plan", "moves", str(file), "ur5e", "--start-q", "0,0,0,0,0,0"])
+    assert done.exit_code == 2
+    assert "not a readable JSON file" in done.stderr

@@ -1,0 +1,279 @@
+"""`plan_moves` against random programs, and by name against what nobody can make."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mistakes import Invalid
+from move_programs import arc, draw, faults, line, moves_of
+
+import beetle_ik as bik
+from beetle_ik.moves import Arc, Joints, Line, Wait
+
+UR5 = bik.Robot.named("ur5e")
+HOME = np.array([0.0, -1.5, 1.8, -1.9, -1.57, 0.3])
+STARTS = {
+    "ur5e": HOME,
+    "panda": np.array([0.0, -0.6, 0.0, -2.2, 0.0, 1.8, 0.7]),
+    "iiwa14": np.array([0.0, 0.6, 0.0, -1.5, 0.0, 0.9, 0.0]),
+}
+ACCELERATION, JERK = 5.0, 100.0
+LIMITS = bik.Limits(acceleration=ACCELERATION)
+
+
+def pose(x: float, y: float, z: float, yaw: float = 0.0) -> np.ndarray:
+    return bik.pose([x, y, z], rpy=[np.pi, 0.0, yaw])
+
+
+def shifted(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+    moved = UR5.fk(HOME)
+    moved[:3, 3] += [x, y, z]
+    return moved
+
+
+def planned(program: list[dict[str, Any]], **given: Any) -> list[str]:
+    given = {"limits": LIMITS, "start_q": HOME, **given}
+    plan = bik.plan_moves(UR5, moves_of(program), **given)
+    assert plan.success
+    limits = {"velocity": UR5.velocity_limit, "acceleration": np.full(6, ACCELERATION)}
+    return faults(UR5, UR5.fk, program, plan, limits)
+
+
+@pytest.mark.parametrize("jerk", [False, True], ids=["acceleration", "jerk"])
+@pytest.mark.parametrize("name", STARTS)
+def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
+    robot = bik.Robot.named(name)
+    limits = {"velocity": robot.velocity_limit, "acceleration": np.full(robot.dof, ACCELERATION)}
+    if jerk:
+        limits["jerk"] = np.full(robot.dof, JERK)
+    made = 0
+    for seed in range(5):
+        random = np.random.default_rng(seed)
+        start = STARTS[name] + random.uniform(-0.2, 0.2, robot.dof)
+        program = draw(robot, start, 6, random)
+        given = bik.Limits(acceleration=ACCELERATION, jerk=JERK if jerk else None)
+        try:
+            plan = bik.plan_moves(robot, moves_of(program), start_q=start, limits=given)
+        except bik.InvalidInputError as error:
+            said = str(error)
+            if "move " not in said:
+                raise
+            continue
+        made += 1
+        assert plan.success
+        assert faults(robot, robot.fk, program, plan, limits, samples=3000) == []
+    assert made >= 3
+
+
+def test_the_judge_notices_what_is_wrong() -> None:
+    program = [{"kind": "line", "pose": shifted(z=-0.1), "speed": 0.1}]
+    limits = {"velocity": UR5.velocity_limit, "acceleration": np.full(6, ACCELERATION)}
+    plan = bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=LIMITS)
+    assert faults(UR5, UR5.fk, program, plan, limits) == []
+    slower = [{**program[0], "speed": 0.05}]
+    farther = [{**program[0], "pose": shifted(y=0.01, z=-0.1)}]
+    tighter = {**limits, "acceleration": np.full(6, 0.5)}
+    assert "asked for" in faults(UR5, UR5.fk, slower, plan, limits)[0]
+    assert "off its path" in faults(UR5, UR5.fk, farther, plan, limits)[0]
+    assert "acceleration" in faults(UR5, UR5.fk, program, plan, tighter)[0]
+
+
+def test_curves_of_the_judge_pass_their_points() -> None:
+    start, end = shifted(), shifted(x=0.1, y=0.1)
+    via = shifted(x=0.1)[:3, 3]
+    for curve, length in ((line(start, end), 0.1 * np.sqrt(2)), (arc(start, via, end), np.pi * 0.05 * np.sqrt(2))):
+        ends = curve.at(np.array([0.0, curve.length]))
+        np.testing.assert_allclose(ends, [start[:3, 3], end[:3, 3]], atol=1e-12)
+        assert curve.length == pytest.approx(length)
+    circle = arc(start, via, end)
+    assert np.linalg.norm(circle.at(circle.nearest(via[None])) - via) < 1e-12
+
+
+def test_a_speed_is_kept_but_for_starting_and_stopping() -> None:
+    plan = bik.plan_moves(UR5, [Line(shifted(z=-0.2), speed=0.05)], start_q=HOME, limits=LIMITS)
+    [report] = plan.moves
+    assert report.speed == pytest.approx(0.05, rel=1e-6)
+    assert {bound.limit for bound in report.bound_by} == {"acceleration"}
+    assert sum(bound.end - bound.start for bound in report.bound_by) < 0.1
+    assert plan.trajectory.duration == pytest.approx(4.0, abs=0.1)
+
+
+def test_a_speed_that_joints_cannot_reach_is_no_error() -> None:
+    plan = bik.plan_moves(UR5, [Line(shifted(y=0.3, z=-0.1), speed=50.0)], start_q=HOME, limits=LIMITS)
+    [report] = plan.moves
+    assert plan.success
+    assert 0.1 < report.speed < 5.0
+    assert report.bound_by[0].start == 0.0
+    assert report.bound_by[-1].end == pytest.approx(plan.trajectory.duration)
+
+
+def test_a_full_circle_comes_back() -> None:
+    start = shifted()
+    centre = start[:3, 3] + np.array([0.0, 0.05, 0.0])
+    end = shifted(y=0.1)
+    via = centre + np.array([0.05, 0.0, 0.0])
+    program = [{"kind": "arc", "via": via, "pose": end, "angle": 2 * np.pi, "speed": 0.1}]
+    assert planned(program) == []
+    plan = bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=LIMITS)
+    np.testing.assert_allclose(UR5.fk(plan.trajectory.at(plan.trajectory.duration)[0]), start, atol=1e-6)
+
+
+def test_blends_keep_the_speed_through_a_corner() -> None:
+    corner = [
+        {"kind": "line", "pose": shifted(y=0.1), "speed": 0.05, "blend": 0.02},
+        {"kind": "line", "pose": shifted(y=0.1, z=-0.1), "speed": 0.05},
+    ]
+    assert planned(corner) == []
+    sharp = [{**corner[0], "blend": 0.0}, corner[1]]
+    assert planned(sharp) == []
+    durations = [
+        bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=LIMITS).trajectory.duration
+        for program in (corner, sharp)
+    ]
+    assert durations[0] < durations[1]
+
+
+def test_the_arm_stops_where_a_blend_would_turn_back() -> None:
+    back = [{"kind": "line", "pose": shifted(y=0.1), "speed": 0.1, "blend": 0.02}, {"kind": "line", "pose": shifted()}]
+    assert planned(back) == []
+    plan = bik.plan_moves(UR5, moves_of(back), start_q=HOME, limits=LIMITS)
+    assert np.abs(plan.trajectory.at(plan.moves[0].end)[1]).max() < 1e-9
+
+
+@pytest.mark.parametrize("yaw", [np.pi / 2, np.pi, -np.pi / 2])
+def test_a_turn_on_the_spot_counts_a_tenth_of_a_metre(yaw: float) -> None:
+    there, turned = pose(0.4, -0.1, 0.3), pose(0.4, -0.1, 0.3, yaw)
+    plan = bik.plan_moves(UR5, [Joints(there), Line(turned, speed=0.02)], start_q=HOME, limits=LIMITS)
+    report = plan.moves[1]
+    assert report.end - report.start == pytest.approx(abs(yaw) * 0.1 / 0.02, rel=0.02)
+
+
+def test_moves_to_where_the_arm_is_take_no_time() -> None:
+    here = UR5.fk(HOME)
+    plan = bik.plan_moves(UR5, [Joints(HOME), Line(here), Wait(0.25), Line(here)], start_q=HOME, limits=LIMITS)
+    assert [(report.start, report.end) for report in plan.moves] == [(0.0, 0.0)] * 2 + [(0.0, 0.25), (0.25, 0.25)]
+    assert plan.trajectory.duration == 0.25
+
+
+def test_the_first_joint_move_suits_the_line_after_it() -> None:
+    # From some branches and turns of the first pose, a joint meets its limit on the way to the second.
+    narrow = UR5.with_limits(lower=[-3.2] * 6, upper=[3.2] * 6)
+    found = 0
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        q = random.uniform(-3.0, 3.0, 6)
+        first = narrow.fk(q)
+        second = first.copy()
+        second[:3, 3] += random.uniform(-0.2, 0.2, 3)
+        try:
+            plan = bik.plan_moves(narrow, [Joints(first), Line(second)], start_q=HOME, limits=LIMITS)
+        except bik.InvalidInputError as error:
+            said = str(error)
+            if "move " not in said:
+                raise
+            continue
+        found += 1
+        q = plan.trajectory.sample(0.01)[1]
+        assert (np.abs(q) <= 3.2 + 1e-9).all()
+    assert found >= 12
+
+
+SLOW = Line(shifted(z=-0.1), speed=0.05)
+WRONG: list[tuple[list[Any], str]] = [
+    ([Line(shifted(z=-0.1), speed=-1.0, name="in")], "speed of move 0 'in' must be positive and finite, got -1"),
+    ([SLOW, Line(shifted(), speed=np.nan)], "speed of move 1 must be positive and finite, got NaN"),
+    ([SLOW, Line(shifted(), blend=-0.1)], "blend of move 1 must be zero or more and finite, got -0.1"),
+    ([Wait(-1.0, name="rest")], "time of move 0 'rest' must be from 0 to 1000000 s, got -1"),
+    ([Wait(np.inf)], "time of move 0 must be from 0 to 1000000 s, got inf"),
+    ([Joints(HOME * np.nan)], "joint positions of move 0 must be finite, but joint 'shoulder_pan_joint' is NaN"),
+    (
+        [Arc(UR5.fk(HOME)[:3, 3], shifted(y=0.1))],
+        "move 0: an arc needs three points, and its start is via: for a full circle give another point of it as "
+        "the end, and the angle",
+    ),
+    (
+        [Arc(shifted(x=0.1)[:3, 3], UR5.fk(HOME))],
+        "move 0: an arc needs three points, and its start is its end: for a full circle give another point of it "
+        "as the end, and the angle",
+    ),
+    (
+        [Line(shifted(y=0.1), blend=0.2), Line(shifted())],
+        "move 0: its blend of 0.2 m does not fit into move 0, which is 0.1000 m long: make the blend smaller",
+    ),
+    (
+        [Line(shifted(y=0.1), blend=0.01), Line(shifted(y=0.1))],
+        "move 0: its blend has no room, because move 1 ends where it begins: leave that out, or give no blend",
+    ),
+    (
+        [
+            Line(shifted(y=0.1), blend=0.06, name="a"),
+            Line(shifted(y=0.1, z=0.1), blend=0.06, name="b"),
+            Line(shifted()),
+        ],
+        "move 1 'b': its blend of 0.06 m, with the blend at its other end, does not fit into move 1 'b', which is "
+        "0.1000 m long: make the blend smaller",
+    ),
+]
+
+
+@pytest.mark.parametrize(("program", "message"), WRONG, ids=[message[:30] for _, message in WRONG])
+def test_wrong_moves_are_named(program: list[Any], message: str) -> None:
+    with pytest.raises(Invalid) as caught:
+        bik.plan_moves(UR5, program, start_q=HOME, limits=LIMITS)
+    assert str(caught.value) == message
+
+
+def test_a_line_out_of_reach_says_where() -> None:
+    with pytest.raises(Invalid, match=r"^move 0 'out' cannot be reached: 0.* m along it, no solution") as caught:
+        bik.plan_moves(UR5, [Line(shifted(x=-0.9), name="out")], start_q=HOME, limits=LIMITS)
+    assert "(no configuration has this pose)" in str(caught.value)
+
+
+def test_a_joint_that_meets_its_limit_is_named() -> None:
+    narrow = UR5.with_limits(lower=HOME - 0.2, upper=HOME + 0.2)
+    with pytest.raises(Invalid, match=r"a motion along move 0 was not found: .* joint 'shoulder_pan_joint' would have"):
+        bik.plan_moves(narrow, [Line(shifted(y=0.3))], start_q=HOME, limits=LIMITS)
+
+
+def test_a_line_through_an_obstacle_is_refused_by_name() -> None:
+    thick = UR5.with_capsules(radius=0.04)
+    tip = shifted(z=-0.1)[:3, 3]
+    ball = bik.obstacles.Sphere(tip - [0.0, 0.0, 0.05], 0.04)
+    with pytest.raises(Invalid, match=r"a motion along move 0 'in' was not found: .* obstacle 0 .Sphere."):
+        bik.plan_moves(thick, [Line(shifted(z=-0.1), name="in")], start_q=HOME, limits=LIMITS, obstacles=[ball])
+
+
+def test_a_joint_move_goes_around_an_obstacle() -> None:
+    thick = UR5.with_capsules(radius=0.04)
+    there = HOME + 1.5 * np.eye(6)[0]
+    post = bik.obstacles.Sphere(thick.fk(HOME + 0.75 * np.eye(6)[0])[:3, 3], 0.05)
+    program = [Joints(there, name="over"), Line(thick.fk(there) @ bik.pose([0.0, 0.0, -0.05]), speed=0.1)]
+    plan = bik.plan_moves(thick, program, start_q=HOME, limits=LIMITS, obstacles=[post])
+    assert plan.success
+    q = plan.trajectory.sample(0.005)[1]
+    assert bik.obstacles.clearance(thick, q, [post]).min() > 1e-3
+
+
+def test_what_is_to_be_kept_holds_or_is_refused() -> None:
+    flat = bik.Keep(UR5.fk(HOME)[:3, 3], bik.tasks.Position(tolerance=[np.inf, np.inf, 0.01]))
+    across = [Line(shifted(y=0.1), speed=0.1, name="across")]
+    plan = bik.plan_moves(UR5, across, start_q=HOME, limits=LIMITS, keep=flat)
+    assert plan.success
+    assert plan.kept[0][1][2] < 2e-4
+    with pytest.raises(Invalid, match=r"a motion along move 0 'down' was not found: .* to be kept"):
+        bik.plan_moves(UR5, [Line(shifted(z=-0.1), name="down")], start_q=HOME, limits=LIMITS, keep=flat)
+
+
+def test_a_program_is_not_retimed() -> None:
+    plan = bik.plan_moves(UR5, [SLOW], start_q=HOME, limits=LIMITS)
+    with pytest.raises(bik.InfeasibleError, match="a program keeps the speeds of its moves"):
+        plan.retime(bik.Limits(acceleration=1.0))
+
+
+def test_moves_show_what_they_were_made_of() -> None:
+    assert repr(Wait(0.5, name="w")) == "moves.Wait(0.5, name='w')"
+    assert repr(Line(np.eye(4), speed=0.1)) == "moves.Line(pose at [0.0, 0.0, 0.0], speed=0.1)"
+    assert Joints([0.0, 1.0], blend=0.1) == Joints([0.0, 1.0], blend=0.1)
+    assert Joints([0.0, 1.0]) != Joints([0.0, 1.5])
+    with pytest.raises(Invalid, match=r"moves.1. must be one of beetle_ik.moves, got"):
+        bik.plan_moves(UR5, [SLOW, "down"], start_q=HOME, limits=LIMITS)  # type: ignore[list-item]
