@@ -81,7 +81,7 @@ impl TipRates {
     /// These limits without speeds that joints of such velocities and positions (largest sizes, one per joint) can never exceed; `None` if none
     /// is left.
     pub fn without_idle(mut self, [velocity, position]: [&[f64]; 2]) -> Option<Self> {
-        let mut at = Interval::new(&self.robot);
+        let mut at = JointSpan::new(&self.robot);
         at.set(&self.robot, std::iter::empty(), [0.0, 1.0]);
         for tip in &mut self.tips {
             let [speed, turn] = tip.elements.fastest(&self.robot, &at.frames, [velocity, position]);
@@ -122,7 +122,7 @@ impl TipRates {
     }
 
     /// Factor by which the motion over an interval of twice `half` (s) must be slowed down to keep limits of these kinds, at most.
-    pub fn factor(&self, at: &Interval, half: f64, fields: &[TipField]) -> f64 {
+    pub fn factor(&self, at: &JointSpan, half: f64, fields: &[TipField]) -> f64 {
         let of_tip = |tip: &LimitedTip| {
             let jet = at.jet(&self.robot, tip);
             fields.iter().map(|field| tip.factor(&jet, half, *field)[1]).fold(0.0, f64::max)
@@ -132,7 +132,7 @@ impl TipRates {
 
     /// Largest rate (1/s) at which speed and turn speed, as fractions of their limits, can grow for joints of these largest velocities and
     /// accelerations, in a motion of this duration (s) that begins at the middle of `at`.
-    pub fn growth(&self, at: &Interval, rates: impl Fn(usize) -> [f64; 2], duration: f64) -> f64 {
+    pub fn growth(&self, at: &JointSpan, rates: impl Fn(usize) -> [f64; 2], duration: f64) -> f64 {
         let of_tip = |tip: &LimitedTip| {
             let [speed, turn_speed] = tip.elements.growth(&self.robot, &at.frames, &rates, duration);
             (speed / tip.limit(TipField::Speed)).max(turn_speed / tip.limit(TipField::TurnSpeed))
@@ -161,7 +161,7 @@ impl TipRates {
         // A rate far below its limit may be any; so a tip that stays in place needs no short intervals.
         let enough = enough.max(1e-9);
         let mut walk =
-            Walk { at: Interval::new(&self.robot), of, fields, enough, seen: 0.0, proven: 0.0, intervals: 0 };
+            Walk { at: JointSpan::new(&self.robot), of, fields, enough, seen: 0.0, proven: 0.0, intervals: 0 };
         let n = motion.joints().len();
         let segments = || motion.coefficients().chunks_exact(n).zip(motion.knots().windows(2));
         for (polynomials, ends) in segments() {
@@ -199,13 +199,13 @@ impl LimitedTip {
 
 /// An interval of a joint motion: its polynomials on \[-1, 1\], and the moving elements in its middle. Reused for any number of them.
 #[derive(Debug, Clone)]
-pub(crate) struct Interval {
+pub(crate) struct JointSpan {
     joints: Vec<Coefficients>,
     q: Vec<f64>,
     frames: FrameBuffer,
 }
 
-impl Interval {
+impl JointSpan {
     /// An interval of a motion of `robot`.
     pub fn new(robot: &Robot) -> Self {
         let n = robot.dof();
@@ -239,7 +239,7 @@ impl Interval {
 
 /// A search for the largest factor of a motion.
 struct Walk<'a> {
-    at: Interval,
+    at: JointSpan,
     of: &'a [LimitedTip],
     fields: &'a [TipField],
     enough: f64,
@@ -371,7 +371,8 @@ mod tests {
     #[test]
     fn limits_that_joints_cannot_exceed_are_idle() {
         let robot = Robot::planar(&[0.5, 0.5]).unwrap();
-        let idle = |limit: f64| limited(&robot, [limit, f64::INFINITY, f64::INFINITY]).without_idle([&[1.0; 2], &[4.0; 2]]);
+        let idle =
+            |limit: f64| limited(&robot, [limit, f64::INFINITY, f64::INFINITY]).without_idle([&[1.0; 2], &[4.0; 2]]);
         assert!(idle(1.51).is_none() && idle(1.49).is_some());
     }
 
@@ -383,7 +384,10 @@ mod tests {
         let found = limited(&robot, [0.5, f64::INFINITY, 2.5]).excesses(&motion);
         assert_eq!(found.len(), 1);
         let tip = robot.tips().next().unwrap();
-        assert_eq!((found[0].what.as_str(), found[0].unit, found[0].bound), (&*format!("speed of tip '{tip}'"), "m/s", 0.5));
+        assert_eq!(
+            (found[0].what.as_str(), found[0].unit, found[0].bound),
+            (&*format!("speed of tip '{tip}'"), "m/s", 0.5)
+        );
         assert!((found[0].value - 1.0).abs() < 2e-6, "{found:?}");
     }
 }

@@ -259,7 +259,8 @@ impl Session {
             self.arm.last_value = None;
         }
         if self.pace.is_some() && self.arm.tasks.with(&arrival.targets).has_pairs() {
-            let problem = "limits of tips are not kept while one tip is held in the frame of another: leave one of the two out";
+            let problem =
+                "limits of tips are not kept while one tip is held in the frame of another: leave one of the two out";
             return Err(Error::Contradiction { problem: problem.into() });
         }
         Ok(())

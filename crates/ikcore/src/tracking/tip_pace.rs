@@ -4,11 +4,11 @@
 //! line of the joints in each tick and, for an arm whose velocity may not jump, the spline that it follows. In a stop, most ticks are passed over:
 //! the speed of a tip cannot change faster than its acceleration allows.
 
+use super::around_arm::require_constant;
 use super::commanded_motion::segment;
 use super::safety_filter::SafetyFilter;
-use super::around_arm::require_constant;
 use super::step_context::StepContext;
-use crate::constraint::{Interval, TipRates};
+use crate::constraint::{JointSpan, TipRates};
 use crate::error::Result;
 use crate::limits::{Limits, ROUNDING, TipField};
 use crate::math::vector::write_within;
@@ -31,7 +31,7 @@ const APART: f64 = 2.0;
 #[derive(Debug)]
 pub(super) struct TipPace {
     rates: TipRates,
-    at: Interval,
+    at: JointSpan,
     /// Commands from two ticks before this one to two ticks after the stop, one after another.
     rows: Vec<f64>,
     /// Largest step and change of each joint (rad, m per tick and per tick^2).
@@ -46,9 +46,13 @@ impl TipPace {
     /// a tip that a rotation vector carries.
     pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
         let Some(rates) = TipRates::new(robot, limits.tips(), "track")? else { return Ok(None) };
-        require_constant(limits, "tracking with limits of tips", "limits that vary can push a tip beyond its own; give numbers")?;
+        require_constant(
+            limits,
+            "tracking with limits of tips",
+            "limits that vary can push a tip beyond its own; give numbers",
+        )?;
         let most = [(); 2].map(|()| vec![0.0; robot.dof()]);
-        Ok(Some(Box::new(Self { at: Interval::new(robot), rates, rows: vec![], most })))
+        Ok(Some(Box::new(Self { at: JointSpan::new(robot), rates, rows: vec![], most })))
     }
 
     /// Moves the command `q` towards the braking one until it and the stop after it keep the limits and, under acceleration limits, `safety`
@@ -131,7 +135,11 @@ impl TipPace {
         let robot = self.rates.robot();
         self.at.set(robot, q.iter().map(|q| polynomial([*q])), [0.0, 1.0]);
         let [steps, changes] = &self.most;
-        self.rates.growth(&self.at, |j| [steps[j] / dt, changes[j] / (dt * dt)], dt * (self.rows.len() / q.len()) as f64) * dt
+        self.rates.growth(
+            &self.at,
+            |j| [steps[j] / dt, changes[j] / (dt * dt)],
+            dt * (self.rows.len() / q.len()) as f64,
+        ) * dt
     }
 
     /// The factor in a tick, 0 for the one before the command: on the spline and, from the command on, on the straight line.
