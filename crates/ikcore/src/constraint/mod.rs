@@ -29,4 +29,4 @@ pub(crate) use keep_sweep::KeepScratch;
 pub use keep_sweep::{Broken, KeepSweep};
 pub(crate) use onto::{KeepTasks, Onto};
 pub(crate) use tip_jet::{SQUARE, TipJet, VectorJet};
-pub(crate) use tip_rates::{TIGHT, TipExcess, TipInterval, TipRates};
+pub(crate) use tip_rates::{JointSpan, TIGHT, TipExcess, TipRates};

@@ -81,7 +81,7 @@ impl TipRates {
     /// These limits without speeds that joints of such velocities and positions (largest sizes, one per joint) can never exceed; `None` if none
     /// is left.
     pub fn without_idle(mut self, [velocity, position]: [&[f64]; 2]) -> Option<Self> {
-        let mut at = TipInterval::new(&self.robot);
+        let mut at = JointSpan::new(&self.robot);
         at.set(&self.robot, std::iter::empty(), [0.0, 1.0]);
         for tip in &mut self.tips {
             let [speed, turn] = tip.elements.fastest(&self.robot, &at.frames, [velocity, position]);
@@ -122,7 +122,7 @@ impl TipRates {
     }
 
     /// Factor by which the motion over an interval of twice `half` (s) must be slowed down to keep limits of these kinds, at most.
-    pub fn factor(&self, at: &TipInterval, half: f64, fields: &[TipField]) -> f64 {
+    pub fn factor(&self, at: &JointSpan, half: f64, fields: &[TipField]) -> f64 {
         let of_tip = |tip: &LimitedTip| {
             let jet = at.jet(&self.robot, tip);
             fields.iter().map(|field| tip.factor(&jet, half, *field)[1]).fold(0.0, f64::max)
@@ -132,7 +132,7 @@ impl TipRates {
 
     /// Largest rate (1/s) at which speed and turn speed, as fractions of their limits, can grow for joints of these largest velocities and
     /// accelerations, in a motion of this duration (s) that begins at the middle of `at`.
-    pub fn growth(&self, at: &TipInterval, rates: impl Fn(usize) -> [f64; 2], duration: f64) -> f64 {
+    pub fn growth(&self, at: &JointSpan, rates: impl Fn(usize) -> [f64; 2], duration: f64) -> f64 {
         let of_tip = |tip: &LimitedTip| {
             let [speed, turn_speed] = tip.elements.growth(&self.robot, &at.frames, &rates, duration);
             (speed / tip.limit(TipField::Speed)).max(turn_speed / tip.limit(TipField::TurnSpeed))
@@ -158,7 +158,7 @@ impl TipRates {
 
     /// The parts of the limits of each tip that joints on these polynomials use at `t` (s).
     pub fn shares(&self, polynomials: &[Coefficients], t: f64) -> impl Iterator<Item = (usize, TipField, f64)> {
-        let mut at = TipInterval::new(&self.robot);
+        let mut at = JointSpan::new(&self.robot);
         at.set(&self.robot, polynomials.iter().copied(), [t, 1.0]);
         let of_tip = |(i, tip): (usize, &LimitedTip)| {
             let jet = at.jet(&self.robot, tip);
@@ -180,7 +180,7 @@ impl TipRates {
         // A rate far below its limit may be any; so a tip that stays in place needs no short intervals.
         let enough = enough.max(1e-9);
         let mut walk =
-            Walk { at: TipInterval::new(&self.robot), of, fields, enough, seen: 0.0, proven: 0.0, intervals: 0 };
+            Walk { at: JointSpan::new(&self.robot), of, fields, enough, seen: 0.0, proven: 0.0, intervals: 0 };
         let n = motion.joints().len();
         let segments = || motion.coefficients().chunks_exact(n).zip(motion.knots().windows(2));
         for (polynomials, ends) in segments() {
@@ -218,13 +218,13 @@ impl LimitedTip {
 
 /// An interval of a joint motion: its polynomials on \[-1, 1\], and the moving elements in its middle. Reused for any number of them.
 #[derive(Debug, Clone)]
-pub(crate) struct TipInterval {
+pub(crate) struct JointSpan {
     joints: Vec<Coefficients>,
     q: Vec<f64>,
     frames: FrameBuffer,
 }
 
-impl TipInterval {
+impl JointSpan {
     /// An interval of a motion of `robot`.
     pub fn new(robot: &Robot) -> Self {
         let n = robot.dof();
@@ -258,7 +258,7 @@ impl TipInterval {
 
 /// A search for the largest factor of a motion.
 struct Walk<'a> {
-    at: TipInterval,
+    at: JointSpan,
     of: &'a [LimitedTip],
     fields: &'a [TipField],
     enough: f64,

@@ -5,7 +5,7 @@
 
 use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
-use crate::constraint::{TIGHT, TipInterval, TipJet, TipRates, VectorJet};
+use crate::constraint::{JointSpan, TIGHT, TipJet, TipRates, VectorJet};
 use crate::error::Result;
 use crate::interrupt::checkpoint_at;
 use crate::limits::TipField;
@@ -55,7 +55,7 @@ impl<'a> TipSegments<'a> {
     /// [`Error::Interrupted`](crate::Error::Interrupted).
     pub(super) fn new(path: &JointPath, segments: &[Segment], rates: &'a TipRates) -> Result<Self> {
         let mut all = Self { rates, jets: Vec::with_capacity(segments.len()), begins: vec![0] };
-        let mut at = TipInterval::new(rates.robot());
+        let mut at = JointSpan::new(rates.robot());
         for (i, segment) in segments.iter().enumerate() {
             checkpoint_at(i)?;
             let half = 0.5 * segment.length;
@@ -65,7 +65,7 @@ impl<'a> TipSegments<'a> {
         Ok(all)
     }
 
-    fn push(&mut self, at: &mut TipInterval, of: (&JointPath, &Segment), [middle, half]: [f64; 2], depth: usize) {
+    fn push(&mut self, at: &mut JointSpan, of: (&JointPath, &Segment), [middle, half]: [f64; 2], depth: usize) {
         let (path, segment) = of;
         let powers = path.powers(segment.piece);
         let polynomials = (0..path.joints().len()).map(|j| polynomial(powers.map(|power| power[j])));
@@ -94,12 +94,12 @@ impl<'a> TipSegments<'a> {
             let bound = |jet: &PathJet| {
                 let of = |rate: &VectorJet, limit: f64| {
                     let ratio = limit * jet.half / (norm(&rate.end(x)) + rate.rest);
-                    if ratio.is_nan() { UNLIMITED } else { ratio * ratio }
+                    if ratio.is_nan() { f64::INFINITY } else { ratio * ratio }
                 };
                 let [speed, turn] = self.limits(jet.tip);
                 of(&jet.jet.velocity, speed).min(of(&jet.jet.turn, turn))
             };
-            jets.iter().map(bound).fold(UNLIMITED, f64::min)
+            jets.iter().map(bound).fold(f64::INFINITY, f64::min)
         };
         [of_end(&jets[..tips], -1.0), of_end(&jets[jets.len() - tips..], 1.0)]
     }

@@ -8,7 +8,7 @@ use super::around_arm::require_constant;
 use super::commanded_motion::segment;
 use super::safety_filter::SafetyFilter;
 use super::step_context::StepContext;
-use crate::constraint::{TipInterval, TipRates};
+use crate::constraint::{JointSpan, TipRates};
 use crate::error::Result;
 use crate::limits::{Limits, ROUNDING, TipField};
 use crate::math::vector::write_within;
@@ -31,7 +31,7 @@ const APART: f64 = 2.0;
 #[derive(Debug)]
 pub(super) struct TipPace {
     rates: TipRates,
-    at: TipInterval,
+    at: JointSpan,
     /// Commands from two ticks before this one to two ticks after the stop, one after another.
     rows: Vec<f64>,
     /// Largest step and change of each joint (rad, m per tick and per tick^2).
@@ -52,7 +52,7 @@ impl TipPace {
             "limits that vary can push a tip beyond its own; give numbers",
         )?;
         let most = [(); 2].map(|()| vec![0.0; robot.dof()]);
-        Ok(Some(Box::new(Self { at: TipInterval::new(robot), rates, rows: vec![], most })))
+        Ok(Some(Box::new(Self { at: JointSpan::new(robot), rates, rows: vec![], most })))
     }
 
     /// Moves the command `q` towards the braking one until it and the stop after it keep the limits and, under acceleration limits, `safety`

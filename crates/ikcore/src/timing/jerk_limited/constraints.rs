@@ -6,7 +6,7 @@
 use super::super::constant_limits::ConstantLimits;
 use super::clock::{Clock, PathPoint};
 use super::rate_spline::{RateSpline, Weights};
-use crate::constraint::{TipInterval, TipRates, VectorJet};
+use crate::constraint::{JointSpan, TipRates, VectorJet};
 use crate::limits::TipField;
 use crate::math::vector3::{Vector, norm};
 
@@ -150,12 +150,12 @@ impl Constraints {
 /// The motion of limited tips at a point of the clock.
 struct TipsAt<'a> {
     rates: &'a TipRates,
-    interval: TipInterval,
+    interval: JointSpan,
 }
 
 impl<'a> TipsAt<'a> {
     fn new(rates: &'a TipRates) -> Self {
-        Self { rates, interval: TipInterval::new(rates.robot()) }
+        Self { rates, interval: JointSpan::new(rates.robot()) }
     }
 
     /// Adds the rows of acceleration limits; returns 1 / y where a limit of speed or turn speed is reached.

@@ -8,7 +8,7 @@ use super::clock::Clock;
 /// Intervals of equal times: so many; more for each piece of the path, or for each time that an acceleration needs to reach its limit,
 /// whichever are fewer; and at most so many.
 const LEAST: f64 = 150.0;
-const PER_PIECE: f64 = 8.0;
+const PER_PIECE: f64 = 20.0;
 const PER_RAMP: f64 = 10.0;
 const MOST: f64 = 20_000.0;
 
