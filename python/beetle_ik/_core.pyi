@@ -4019,6 +4019,9 @@ class Joints(Move):
         q_or_pose: joint positions (n,) (rad, m), or a pose (4, 4) of the tip, whose configuration the planner chooses.
         blend: radius (m) about the end inside which the motion may round the corner to the next move; 0: it stops there.
         name: name in messages and reports.
+
+    Raises:
+        InvalidInputError: q_or_pose of another shape, or no rigid transform.
     """
 
     def __new__(cls, q_or_pose: ArrayLike, *, blend: float = 0.0, name: str | None = None) -> Joints: ...
@@ -4037,6 +4040,9 @@ class Line(Move):
             each radian. None: as fast as the limits allow.
         blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
         name: name in messages and reports.
+
+    Raises:
+        InvalidInputError: a pose of another shape, or no rigid transform.
     """
 
     def __new__(
@@ -4062,6 +4068,9 @@ class Arc(Move):
         angle: angle (rad) after which the arc ends, on the circle through its start, `via` and the position of `pose`, with
             the orientation of `pose`; 2 pi is a full circle. None: it ends at `pose`.
         name: name in messages and reports.
+
+    Raises:
+        InvalidInputError: a point or a pose of another shape, or no rigid transform.
     """
 
     def __new__(
@@ -4130,11 +4139,11 @@ class SpeedBound:
     """A limit that keeps the tip below the speed asked for."""
 
     @property
-    def joint(self) -> str:
-        """Name of the joint that is nearest to a limit there."""
+    def limit(self) -> str:
+        """The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed"."""
     @property
-    def limit(self) -> Literal["velocity", "acceleration", "jerk"]:
-        """The limit: "velocity", "acceleration" or "jerk"."""
+    def of(self) -> str:
+        """Name of the joint, or of the tip."""
     @property
     def start(self) -> float:
         """From when (s)."""

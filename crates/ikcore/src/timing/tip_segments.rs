@@ -3,7 +3,7 @@
 //! The tip's velocity is p' sqrt(x) and its acceleration p' u + p'' x, with the derivatives p' and p'' of its place by the path parameter: polynomials
 //! over a segment, to rounding, whose Bernstein coefficients bound them at every point.
 
-use super::grid::{Segment, UNLIMITED};
+use super::grid::Segment;
 use super::joint_path::JointPath;
 use crate::constraint::{JointSpan, TIGHT, TipJet, TipRates, VectorJet};
 use crate::error::Result;
