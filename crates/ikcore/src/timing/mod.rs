@@ -52,7 +52,7 @@ pub(crate) use limit_share::OneLimit;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};
-pub(crate) use time_optimal::{coarse_duration, time, time_all};
+pub(crate) use time_optimal::{coarse_duration, rough_duration, time, time_all};
 pub(crate) use time_scaling::scaled;
 pub use violation::Violation;
 pub use within_tolerance::time_optimal_within;

@@ -80,6 +80,19 @@ pub(crate) fn time_all(paths: &[JointPath], limits: &ConstantLimits) -> Result<T
     motions.try_fold(first, |all, next| all.then(&next?, 0.0))
 }
 
+/// Returns the duration (s) of a fast motion under jerk limits along `paths`, each from rest to rest: one that [`time_all`] improves little.
+///
+/// # Errors
+/// As [`time_all`].
+pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Result<f64> {
+    let of_path = |path: &JointPath| {
+        let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
+        let profile = SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends)?;
+        Ok(jerk_limited::rough(path, &profile, limits)?.duration())
+    };
+    paths.iter().map(of_path).sum()
+}
+
 /// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
 /// estimate to compare many paths. Position limits are left to the caller.
 ///

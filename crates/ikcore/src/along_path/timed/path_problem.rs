@@ -10,7 +10,7 @@ use crate::message::Setting;
 use crate::plan::{AlongPathOptions, TimedMotion};
 use crate::robot::Robot;
 use crate::solver::Stopwatch;
-use crate::timing::{ConstantLimits, JointPath, coarse_duration, time_all};
+use crate::timing::{ConstantLimits, JointPath, coarse_duration, rough_duration, time_all};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
@@ -125,21 +125,22 @@ impl<'a> PathProblem<'a> {
         let mut quickest: Option<(f64, Interpolation, JointWaypoints)> = None;
         let mut timed = |interpolation: Interpolation<'a>, start: JointWaypoints| -> Result<f64> {
             let waypoints = interpolation.refined(start)?;
-            let duration = self.duration(&interpolation, &waypoints)?;
+            let least = quickest.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
+            let duration = self.duration(&interpolation, &waypoints, least)?;
             if quickest.as_ref().is_none_or(|(least, ..)| duration < *least) {
                 quickest = Some((duration, interpolation, waypoints));
             }
             Ok(duration)
         };
-        for corners in Corners::on(self.tip_path) {
-            timed(on(self.tip_path, *corners, accuracy), nominal.clone())?;
-        }
         let mut of_wider = f64::INFINITY;
+        for corners in Corners::on(self.tip_path) {
+            of_wider = of_wider.min(timed(on(self.tip_path, *corners, accuracy), nominal.clone())?);
+        }
         for rounded in self.rounded.iter().filter(|rounded| may_round && rounded.off < accuracy) {
             let interpolation = on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off);
             let Some(start) = interpolation.moved(nominal.clone()) else { continue };
             let duration = timed(interpolation, start)?;
-            // The narrower, the slower, once one is slower than a wider one.
+            // The narrower, the slower: what is no quicker than before ends the search.
             if duration > of_wider {
                 break;
             }
@@ -149,14 +150,14 @@ impl<'a> PathProblem<'a> {
         Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
     }
 
-    /// Duration (s) of a motion: roughly, if accelerations may jump.
-    fn duration(&self, interpolation: &Interpolation<'_>, waypoints: &JointWaypoints) -> Result<f64> {
-        if self.limits.limit_jerk() && !self.rounded.is_empty() {
-            let stretches = interpolation.stretches(waypoints)?;
-            return Ok(time_all(&stretches, &self.limits)?.duration());
-        }
+    /// Duration (s) of a motion: roughly, without jerk limits or where it is above `least` even without them.
+    fn duration(&self, interpolation: &Interpolation<'_>, waypoints: &JointWaypoints, least: f64) -> Result<f64> {
         let path = interpolation.path(waypoints)?;
-        coarse_duration(&path, &self.limits, SEGMENTS_A_PIECE * path.pieces())
+        let roughly = coarse_duration(&path, &self.limits, SEGMENTS_A_PIECE * path.pieces())?;
+        if !self.limits.limit_jerk() || self.rounded.is_empty() || roughly > least {
+            return Ok(roughly);
+        }
+        rough_duration(&interpolation.stretches(waypoints)?, &self.limits)
     }
 
     /// Whether everything that is to be kept is certified to hold along a motion.

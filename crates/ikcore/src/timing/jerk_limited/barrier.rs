@@ -119,7 +119,7 @@ impl<'a> Search<'a> {
 
     /// The duration with the barrier; `None` outside of the constraints.
     fn value(&self, coefficients: &[f64], barrier: f64) -> Option<f64> {
-        let (mut duration, mut logarithms) = (0.0, 0.0);
+        let (mut duration, mut logarithms) = (0.0, Logarithms::default());
         for (point, rows, tips) in self.constraints.all() {
             let y = combined(point, coefficients);
             let room = 1.0 - point.slowness * y[0];
@@ -128,14 +128,14 @@ impl<'a> Search<'a> {
             }
             let slow = 1.0 / y[0].sqrt();
             duration += point.share * slow;
-            logarithms += room.ln();
+            logarithms.add(room);
             for tip in tips {
                 let used = tip.used(&y);
                 let room = 1.0 - dot(&used, &used);
                 if !(room > 0.0) {
                     return None;
                 }
-                logarithms += room.ln();
+                logarithms.add(room);
             }
             for row in rows {
                 let [a, b] = row.used(&y);
@@ -143,10 +143,10 @@ impl<'a> Search<'a> {
                 if !(of_acceleration > 0.0 && of_jerk > 0.0) {
                     return None;
                 }
-                logarithms += (of_acceleration * of_jerk).ln();
+                logarithms.add(of_acceleration * of_jerk);
             }
         }
-        Some(duration - barrier * logarithms)
+        Some(duration - barrier * logarithms.sum())
     }
 
     /// Writes the gradient and the second derivatives of the duration with the barrier; returns its value.
@@ -169,6 +169,33 @@ impl<'a> Search<'a> {
             }
         }
         Some(value)
+    }
+}
+
+/// A sum of logarithms, of products: few logarithms of many factors.
+struct Logarithms {
+    sum: f64,
+    product: f64,
+}
+
+impl Default for Logarithms {
+    fn default() -> Self {
+        Self { sum: 0.0, product: 1.0 }
+    }
+}
+
+impl Logarithms {
+    #[inline]
+    fn add(&mut self, factor: f64) {
+        self.product *= factor;
+        if !(1e-100..1e100).contains(&self.product) {
+            self.sum += self.product.ln();
+            self.product = 1.0;
+        }
+    }
+
+    fn sum(&self) -> f64 {
+        self.sum + self.product.ln()
     }
 }
 

@@ -48,6 +48,18 @@ const SHORTEST: f64 = 5_000.0;
 /// # Errors
 /// [`Error::UnsupportedLimit`] if the curvature of the path jumps; [`Error::Interrupted`].
 pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits) -> Result<Trajectory> {
+    timed(path, profile, limits, REFINEMENTS)
+}
+
+/// Returns a motion along `path` that is hardly slower.
+///
+/// # Errors
+/// As [`fastest`].
+pub(super) fn rough(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits) -> Result<Trajectory> {
+    timed(path, profile, limits, 0)
+}
+
+fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, rounds: usize) -> Result<Trajectory> {
     if (1..path.pieces()).any(|piece| path.has_curvature_jump_after(piece - 1)) {
         return Err(Error::UnsupportedLimit {
             field: "jerk".into(),
@@ -61,7 +73,7 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
     let mut constraints = Constraints::new(&clock, &rate, &vec![step; rate.intervals()], limits);
     fastest_rate(&mut rate, &mut constraints)?;
     let (mut best, _) = played(path, &clock, &rate, limits)?;
-    for _ in 0..REFINEMENTS {
+    for _ in 0..rounds {
         let parts = parts(&rate, &constraints, best.duration() / SHORTEST);
         if parts.iter().all(|parts| *parts == 1) {
             break;
