@@ -233,7 +233,7 @@ def test_mistakes_are_told(call: Callable[[], Any], message: str) -> None:
 
 def test_figures_show_arm_search_and_joints(tmp_path: Path) -> None:
     figure = along(bik.paths.circle((1.2, 1.0, 0.0), 0.4, 1.0)).plot()
-    assert len(figure.axes) == 5
+    assert len(figure.axes) == 7  # with the speed and the turn speed of the tip
     figure.savefig(tmp_path / "plan.png")
     in_space = bik.Robot.named("ur5e")
     plan = bik.plan_point_to_point(in_space, start_q=np.zeros(6), end_q=np.full(6, 0.4), method="tpbso", stop=QUICK)

@@ -130,7 +130,7 @@ fn orientations_turn_uniformly_on_lines_and_arcs() {
         }
         for (tip, length) in tips.iter().zip(&length) {
             let expected = Rotation3::new(turn.scaled_axis() * (length / way)) * start.rotation;
-            let apart = (tip.rotation.to_rotation_matrix().matrix() - expected.matrix()).norm();
+            let apart = (tip.rotation.matrix() - expected.matrix()).norm();
             assert!(apart < 1e-4, "{apart} at {length} of {way}");
         }
         assert!((tips[4000].translation.vector - end.translation.vector).norm() < 1e-8);

@@ -79,10 +79,7 @@ fn made<T: pyo3::PyClass<BaseType = PyMove>>(
     blend: f64,
     name: Option<&str>,
     class: T,
-) -> PyClassInitializer<T>
-where
-    T: pyo3::PyClass<BaseType = PyMove>,
-{
+) -> PyClassInitializer<T> {
     let core = Move { kind, blend, name: name.map(str::to_owned) };
     PyClassInitializer::from(PyMove { core }).add_subclass(class)
 }

@@ -58,8 +58,8 @@ use crate::wording::said;
 ///     >>> down[2, 3] -= 0.1
 ///     >>> program = [bik.moves.Line(down, speed=0.05, name="down"), bik.moves.Wait(0.5)]
 ///     >>> plan = bik.plan_moves(arm, program, start_q=q, limits=bik.Limits(acceleration=5.0))
-///     >>> plan.moves[0]
-///     <MoveReport 'down': 0.000 to 2.006 s, up to 0.0500 m/s, bound by ...>
+///     >>> [move.name for move in plan.moves], round(plan.moves[0].speed, 4)
+///     (['down', None], 0.05)
 #[pyfunction]
 #[pyo3(signature = (robot, moves, *, start_q, limits=None, obstacles=None, margin=None, self_collision=None, keep=None, stop=None,
                     seed=0, progress=None))]

@@ -13,7 +13,7 @@ from ..checks import Array, number
 from ..seam import Seam, seam_of
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class GcodeMove:
     """A move of a program.
 
