@@ -13,7 +13,7 @@ from ..attack import Attack, BrokenError, Case
 Array = NDArray[np.float64]
 SAMPLES = 2000
 OFF_PATH = 1e-5
-SPEED = 1e-3
+SPEED, SLOWER = 1e-3, 1.5e-3
 ACCELERATION, JERK = 4.0, 80.0
 
 
@@ -137,12 +137,14 @@ class Programs(Attack):
                     said |= (t >= bound.start) & (t <= bound.end)
                 if (speeds[clear] > asked * (1.0 + SPEED)).any():
                     raise BrokenError("a move is faster than asked for", (i, speeds[clear].max(), asked))
-                if (speeds[clear & ~said] < asked * (1.0 - SPEED)).any():
+                if (speeds[clear & ~said] < asked * (1.0 - SLOWER)).any():
                     raise BrokenError("a move is slower than asked for, and nothing says why", (i, asked))
             at, before = end, blend
         return SAMPLES
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
+        if "mimic joint" in str(error):
+            return  # its limits leave no room for the joint that it follows
         if "'m" not in str(error) and "takes no time" not in str(error):
             raise BrokenError("a program is refused, and no move is named", error)
 

@@ -91,7 +91,8 @@ class TipLimits(Attack):
         return np.einsum("mij,mj->mi", jacobians, qd)
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
-        known = ("same", "limit", "differ", "infinite", "duration", "long")
+        # A joint that follows another may not fit its limits.
+        known = ("same", "limit", "differ", "infinite", "duration", "long", "mimic joint")
         if not any(word in str(error) for word in known):
             raise BrokenError("a right input was refused", error)
 

@@ -10,7 +10,7 @@ use super::preference::Preference;
 use super::ranked::given_up;
 use super::solve_options::{Prefer, SolveOptions};
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits};
+use crate::limits::{Field, Limits, TipField};
 use crate::math::{JointWeights, sampling_range};
 use crate::message::{Setting, message};
 use crate::objective::Bounds;
@@ -339,6 +339,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let remedy = "a single configuration has no motion; leave it out";
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
+    limits.refuse_tips(&TipField::ALL, "solve", "a single configuration has no motion")?;
     let given = limits.position_box()?;
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }

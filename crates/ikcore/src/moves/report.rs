@@ -10,8 +10,8 @@ use crate::robot::Robot;
 use crate::timing::{ConstantLimits, OneLimit};
 use crate::trajectory::Trajectory;
 
-/// Shortfall of the speed, as a fraction of the one asked for, that counts as none.
-const SHORT: f64 = 1e-3;
+/// Shortfall of the rate of the path, as a fraction of the speed asked for, that counts as none: that of the tip is then below 1e-3.
+const SHORT: f64 = 8e-4;
 
 /// Part of the tightest limit's share at which another one is still named, so that names do not alternate between joints that share a motion.
 const STILL: f64 = 0.95;

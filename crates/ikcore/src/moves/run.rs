@@ -157,14 +157,16 @@ impl<'a> Run<'a> {
 /// Parameters of a part at which a run takes it over, from `from` to `to`.
 fn knots_of(part: &RunPart<'_>, from: f64, to: f64) -> Vec<f64> {
     let mut knots = vec![from];
+    if to <= from {
+        // Its corners take all of it.
+        return knots;
+    }
     if part.tool_path.is_some() {
         let spare = 1e-3 * (to - from) / part.path.pieces() as f64;
         knots.extend(part.path.breaks().iter().copied().filter(|s| *s > from + spare && *s < to - spare));
     } else {
         knots.extend((1..LINE_INTERVALS).map(|i| from + (to - from) * i as f64 / LINE_INTERVALS as f64));
     }
-    if to > from {
-        knots.push(to);
-    }
+    knots.push(to);
     knots
 }

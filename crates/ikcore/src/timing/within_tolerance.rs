@@ -15,9 +15,9 @@ const WIDTH_RATIO: f64 = std::f64::consts::SQRT_2;
 /// Number of widths tried, which ends at 1/1000 of the tolerance.
 const WIDTHS: i32 = 21;
 
-/// Segments of a rough timing without jerk limits, and how much of its duration a motion with them surely takes.
+/// Segments of a rough timing without jerk limits, and the part of its duration that a motion with them surely takes.
 const SEGMENTS: usize = 300;
-const SURE: f64 = 0.97;
+const SURE: f64 = 0.85;
 
 /// Returns a fast motion within `limits` that stays within `tolerance` (rad, m; one number per joint) of `path`, at the
 /// same path parameter, from its start to its end. Zero tolerances: the motion is on the path.
