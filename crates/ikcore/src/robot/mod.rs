@@ -16,6 +16,7 @@
 //! | `upright_axis` | a vertical first axis |
 //! | `mobile_base` | a robot on a base that moves |
 //! | `measured_geometry` | a robot with other transforms and offsets, as a calibration finds them |
+//! | `masses`, `dynamics` | masses of the links, payloads and gravity, folded into moving bodies |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
@@ -30,11 +31,13 @@ mod bodies;
 mod body;
 mod builder;
 mod description;
+mod dynamics;
 mod joint;
 mod kinematics;
 mod link_capsule;
 mod links;
 mod manufacturing_errors;
+mod masses;
 mod measured_geometry;
 mod mobile_base;
 mod model;
@@ -61,6 +64,8 @@ pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
+pub use masses::LinkInertia;
+pub(crate) use masses::{InertiaFault, Masses};
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;

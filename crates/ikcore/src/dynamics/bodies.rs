@@ -1,0 +1,85 @@
+//! Moving bodies of a robot, in the order of their frames.
+
+use super::inertia::Inertia;
+use super::mass_moments::MassMoments;
+use crate::kinematics::RotationVector;
+use crate::kinematics::chain::Transmission;
+
+/// Friction and rotor of a joint, with those of its followers reflected.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointDrive {
+    /// Viscous friction (N m s/rad, N s/m).
+    pub damping: f64,
+    /// Dry friction (N m, N), against the velocity.
+    pub friction: f64,
+    /// Inertia of the rotor, as the joint feels it (kg m^2, kg).
+    pub armature: f64,
+}
+
+/// Everything that one stage carries.
+#[derive(Debug, Clone)]
+pub(crate) struct MovingBody {
+    /// Index of the frame before the stage.
+    pub parent: usize,
+    pub motion: Transmission,
+    /// Moments in the frame that the stage moves.
+    pub moments: MassMoments,
+}
+
+/// Rigid bodies of a robot, gravity, friction and rotors.
+///
+/// Frame 0 is the base and frame i is moved by stage i - 1; the frames are those of [`Robot`](crate::robot::Robot), branches
+/// included.
+#[derive(Debug, Clone)]
+pub struct Dynamics {
+    /// Body of frame 0, which stands still.
+    pub(super) base: MassMoments,
+    /// Bodies of the frames from 1 on.
+    pub(super) bodies: Vec<MovingBody>,
+    /// Acceleration of free fall in base axes (m/s^2).
+    pub(super) gravity: [f64; 3],
+    pub(super) drives: Vec<JointDrive>,
+    pub(super) vector: Option<RotationVector>,
+}
+
+impl Dynamics {
+    pub(crate) fn new(
+        base: MassMoments,
+        bodies: Vec<MovingBody>,
+        gravity: [f64; 3],
+        drives: Vec<JointDrive>,
+        vector: Option<RotationVector>,
+    ) -> Self {
+        Self { base, bodies, gravity, drives, vector }
+    }
+
+    /// Number of frames: one more than there are moving bodies.
+    pub fn frames(&self) -> usize {
+        self.bodies.len() + 1
+    }
+
+    /// Inertia of all that moves with frame `frame`, in its axes.
+    pub fn inertia(&self, frame: usize) -> Inertia {
+        frame.checked_sub(1).map_or(&self.base, |stage| &self.bodies[stage].moments).inertia()
+    }
+
+    /// Index of the frame that frame `frame` > 0 moves on.
+    pub fn parent(&self, frame: usize) -> usize {
+        self.bodies[frame - 1].parent
+    }
+
+    /// Motion of frame `frame` > 0 on its parent.
+    pub(crate) fn motion(&self, frame: usize) -> &Transmission {
+        &self.bodies[frame - 1].motion
+    }
+
+    /// Acceleration of free fall in base axes (m/s^2).
+    pub fn gravity(&self) -> [f64; 3] {
+        self.gravity
+    }
+
+    /// Friction and rotor of each joint.
+    pub fn drives(&self) -> &[JointDrive] {
+        &self.drives
+    }
+}

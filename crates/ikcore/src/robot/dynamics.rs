@@ -1,0 +1,167 @@
+//! Dynamics of a robot: its bodies folded over fixed and held joints, and the torques of one configuration.
+
+use std::sync::Arc;
+
+use super::masses::{LinkInertia, Masses};
+use super::model::Robot;
+use crate::dynamics::{
+    Dynamics, DynamicsScratch, Inertia, JointDrive, MassMoments, MotionState, MovingBody,
+};
+use crate::error::{Error, Result, require_finite};
+use crate::math::Frame;
+use crate::message::{Message, Setting, message};
+
+impl Robot {
+    /// Rigid bodies of the robot, one for each frame of its tree.
+    ///
+    /// # Errors
+    /// [`Error::NoDynamics`] if a link has an impossible inertia, if no link has a mass, or if a joint moves none.
+    pub fn dynamics(&self) -> Result<&Dynamics> {
+        let found = self.found_dynamics().get_or_init(|| Arc::new(self.folded_dynamics()));
+        (**found).as_ref().map_err(Clone::clone)
+    }
+
+    /// Inertias of the links that have one, without payloads.
+    pub fn inertias(&self) -> &[LinkInertia] {
+        &self.parts().masses.links
+    }
+
+    /// Payloads, each in the frame of the link that carries it.
+    pub fn payloads(&self) -> &[LinkInertia] {
+        &self.parts().masses.payloads
+    }
+
+    /// Acceleration of free fall in the frame of the robot's base (m/s^2).
+    pub fn gravity(&self) -> [f64; 3] {
+        self.parts().masses.gravity
+    }
+
+    /// Copy of the robot with these inertias of links; those of other links stay.
+    ///
+    /// # Errors
+    /// [`Error::UnknownLink`]; [`Error::ImpossibleInertia`].
+    pub fn with_inertias<'a>(&self, inertias: impl IntoIterator<Item = (&'a str, Inertia)>) -> Result<Self> {
+        let mut masses = (*self.parts().masses).clone();
+        for (link, inertia) in inertias {
+            self.link_number(link)?;
+            require_possible(&format!("inertia of link '{link}'"), &inertia)?;
+            masses.faults.retain(|fault| fault.link != link);
+            put(&mut masses.links, link, inertia);
+        }
+        Ok(self.with_masses(masses))
+    }
+
+    /// Copy of the robot that carries a payload, in place of one that the same link carries already; a mass of zero takes it
+    /// off. The inertia is in the frame of `link`; without a link, in the frame of the tip, tool included.
+    ///
+    /// # Errors
+    /// [`Error::UnknownLink`]; [`Error::ImpossibleInertia`]; [`Error::SeveralTips`] without a link.
+    pub fn with_payload(&self, link: Option<&str>, inertia: Inertia) -> Result<Self> {
+        require_possible("payload", &inertia)?;
+        let (link, inertia) = match link {
+            Some(link) => (link, inertia),
+            None => {
+                self.require_one_tip("with_payload")?;
+                let tip = self.link_names().last().unwrap_or_default();
+                (tip, MassMoments::of(&inertia).moved(&Frame::from(self.tool())).inertia())
+            }
+        };
+        self.link_number(link)?;
+        let mut masses = (*self.parts().masses).clone();
+        masses.payloads.retain(|payload| payload.link != link);
+        if inertia.mass > 0.0 {
+            masses.payloads.push(LinkInertia { link: link.into(), inertia });
+        }
+        Ok(self.with_masses(masses))
+    }
+
+    /// Copy of the robot under this acceleration of free fall, in the frame of the robot's base (m/s^2).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn with_gravity(&self, gravity: [f64; 3]) -> Result<Self> {
+        require_finite("gravity", &gravity, |i| format!("entry {i}"))?;
+        Ok(self.with_masses(Masses { gravity, ..(*self.parts().masses).clone() }))
+    }
+
+    /// Scratch memory for [`write_inverse_dynamics`](Self::write_inverse_dynamics).
+    pub(crate) fn dynamics_scratch(&self, dynamics: &Dynamics) -> DynamicsScratch {
+        DynamicsScratch::new(dynamics, self.frame_buffer())
+    }
+
+    /// Writes the joint torques (N m, or N for prismatic joints) that cause the motion `state`, friction included; all entries
+    /// are finite, n each.
+    #[inline]
+    pub(crate) fn write_inverse_dynamics(
+        &self,
+        dynamics: &Dynamics,
+        state: &MotionState,
+        scratch: &mut DynamicsScratch,
+        torques: &mut [f64],
+    ) {
+        self.write_frames(state.q, &mut scratch.frames);
+        dynamics.inverse(state, &[], scratch, torques);
+    }
+
+    fn folded_dynamics(&self) -> Result<Dynamics> {
+        let none = |problem: Message| Error::NoDynamics { robot: self.name().into(), problem };
+        let masses = &self.parts().masses;
+        if let Some(fault) = masses.faults.first() {
+            return Err(none(fault.problem.as_str().into()));
+        }
+        let numbers = self.link_numbers();
+        let elements: Vec<_> = self.moving_elements().collect();
+        let mut moments = vec![MassMoments::NONE; elements.len() + 1];
+        for LinkInertia { link, inertia } in masses.links.iter().chain(&masses.payloads) {
+            let (frame, offset) = self.carrier_of_link_number(numbers[link.as_str()]);
+            moments[frame].add(&MassMoments::of(inertia).moved(&offset));
+        }
+        if moments.iter().all(|moments| moments.mass == 0.0) {
+            return Err(none(message!["no link has a mass: give ", Setting::Inertias]));
+        }
+        let bodies = elements.iter().zip(&moments[1..]).map(|((parent, _, motion), moments)| MovingBody {
+            parent: *parent,
+            motion: *motion,
+            moments: *moments,
+        });
+        let bodies: Vec<MovingBody> = bodies.collect();
+        let drive = |joint: &super::Joint| JointDrive {
+            damping: joint.damping,
+            friction: joint.friction,
+            armature: joint.armature,
+        };
+        let drives: Vec<JointDrive> = self.joints().iter().map(drive).collect();
+        if let Some(joint) = joint_without_mass(&bodies, &drives) {
+            let name = &self.joints()[joint].name;
+            return Err(none(message![format!("joint '{name}' moves no mass: give "), Setting::Inertias]));
+        }
+        Ok(Dynamics::new(moments[0], bodies, masses.gravity, drives, self.chain().vector.clone()))
+    }
+}
+
+/// Returns the first joint that moves neither a mass nor a rotor.
+fn joint_without_mass(bodies: &[MovingBody], drives: &[JointDrive]) -> Option<usize> {
+    let mut moves: Vec<bool> = drives.iter().map(|drive| drive.armature > 0.0).collect();
+    let mut carried: Vec<f64> = std::iter::once(0.0).chain(bodies.iter().map(|body| body.moments.mass)).collect();
+    for (i, body) in bodies.iter().enumerate().rev() {
+        carried[body.parent] += carried[i + 1];
+        let is_driven = body.motion.scale() != 0.0;
+        moves[body.motion.joint] |= is_driven && carried[i + 1] > 0.0;
+    }
+    moves.iter().position(|moves| !moves)
+}
+
+fn require_possible(what: &str, inertia: &Inertia) -> Result<()> {
+    match inertia.fault() {
+        None => Ok(()),
+        Some(problem) => Err(Error::ImpossibleInertia { what: what.into(), problem }),
+    }
+}
+
+/// Replaces the inertia of a link, or adds it.
+fn put(inertias: &mut Vec<LinkInertia>, link: &str, inertia: Inertia) {
+    match inertias.iter_mut().find(|known| known.link == link) {
+        Some(known) => known.inertia = inertia,
+        None => inertias.push(LinkInertia { link: link.into(), inertia }),
+    }
+}

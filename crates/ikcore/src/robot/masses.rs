@@ -1,0 +1,43 @@
+//! Masses of the links, payloads and gravity.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::Inertia;
+
+/// Acceleration of free fall (m/s^2), the z axis upward.
+pub(super) const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// Inertia of a link, in its frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LinkInertia {
+    /// Name of the link.
+    pub link: String,
+    /// Its inertia.
+    pub inertia: Inertia,
+}
+
+/// Inertia that a file gives and no body can have.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InertiaFault {
+    pub link: String,
+    /// Place and reason, as a sentence.
+    pub problem: String,
+}
+
+/// Masses of a robot. Kinematics needs none of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Masses {
+    /// Inertias of the links that have one.
+    pub links: Vec<LinkInertia>,
+    pub faults: Vec<InertiaFault>,
+    /// At most one for each link.
+    pub payloads: Vec<LinkInertia>,
+    /// Acceleration of free fall in the frame of the robot's base (m/s^2).
+    pub gravity: [f64; 3],
+}
+
+impl Default for Masses {
+    fn default() -> Self {
+        Self { links: vec![], faults: vec![], payloads: vec![], gravity: GRAVITY }
+    }
+}
