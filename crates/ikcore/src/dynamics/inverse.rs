@@ -85,12 +85,26 @@ impl Dynamics {
         scratch: &mut DynamicsScratch,
         torques: &mut [f64],
     ) {
+        self.inverse_without_friction(state, wrenches, scratch, torques);
+        for (joint, (torque, drive)) in torques.iter_mut().zip(&self.drives).enumerate() {
+            let rate = state.qd[joint];
+            let dry = if rate == 0.0 { 0.0 } else { drive.friction.copysign(rate) };
+            *torque += drive.damping * rate + dry;
+        }
+    }
+
+    /// [`inverse`](Self::inverse) without the friction of the joints.
+    pub(crate) fn inverse_without_friction(
+        &self,
+        state: &MotionState,
+        wrenches: &[AppliedWrench],
+        scratch: &mut DynamicsScratch,
+        torques: &mut [f64],
+    ) {
         let DynamicsScratch { frames, states } = scratch;
         inverse(self, frames, state, wrenches, states, torques);
         for (joint, (torque, drive)) in torques.iter_mut().zip(&self.drives).enumerate() {
-            let (rate, acceleration) = (state.qd[joint], state.qdd[joint]);
-            let dry = if rate == 0.0 { 0.0 } else { drive.friction.copysign(rate) };
-            *torque += drive.armature * acceleration + drive.damping * rate + dry;
+            *torque += drive.armature * state.qdd[joint];
         }
     }
 
@@ -140,8 +154,7 @@ fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &MotionS
         let carrier = if motion.of_vector { states[first_of_vector].turn } else { parent.turn };
         let swept = A::cross_x4(carrier, axes[2]);
         let turn = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * rate), parent.turn);
-        let mut turn_rate =
-            A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * acceleration), parent.turn_rate);
+        let mut turn_rate = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * acceleration), parent.turn_rate);
         turn_rate = A::mul_add_x4(swept, F64x4::splat(motion.turn_scale * rate), turn_rate);
         if first_of_vector.wrapping_add(3) == i {
             turn_rate = A::add_x4(turn_rate, F64x4::from_vector(&dynamics.vector_bias(frames, state)));

@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use super::masses::{LinkInertia, Masses};
 use super::model::Robot;
-use crate::dynamics::{
-    Dynamics, DynamicsScratch, Inertia, JointDrive, MassMoments, MotionState, MovingBody,
-};
+use crate::dynamics::{Dynamics, DynamicsScratch, Inertia, JointDrive, MassMoments, MotionState, MovingBody};
 use crate::error::{Error, Result, require_finite};
 use crate::math::Frame;
 use crate::message::{Message, Setting, message};
