@@ -3,6 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::error::{Error, Result};
+
 /// Inertia of a rigid body in the frame of its link.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Inertia {
@@ -28,6 +30,17 @@ impl Inertia {
         let turned = rotation * matrix * rotation.transpose();
         let entry = |i: usize, j: usize| 0.5 * (turned[(i, j)] + turned[(j, i)]);
         Self { mass, center, matrix: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))) }
+    }
+
+    /// Checks that a body can have this inertia; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::ImpossibleInertia`].
+    pub fn require_possible(&self, what: &str) -> Result<()> {
+        match self.fault() {
+            None => Ok(()),
+            Some(problem) => Err(Error::ImpossibleInertia { what: what.into(), problem }),
+        }
     }
 
     /// Returns the reason why no body has this inertia; `None` if one has. Rounding of files is taken.

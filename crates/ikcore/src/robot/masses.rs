@@ -19,7 +19,8 @@ pub struct LinkInertia {
 /// Inertia that a file gives and no body can have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InertiaFault {
-    pub link: String,
+    /// Name of the link; of a joint, "joint 'name'".
+    pub owner: String,
     /// Place and reason, as a sentence.
     pub problem: String,
 }
