@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::joint::Joint;
-use super::masses::{LinkInertia, Masses};
+use super::masses::{InertiaFault, LinkInertia, Masses};
 use super::model::Robot;
 use crate::dynamics::{Dynamics, Inertia, JointDrive, MassMoments, MovingBody};
 use crate::error::{Error, Result, require_finite};
@@ -86,12 +86,20 @@ impl Robot {
     fn folded_dynamics(&self) -> Result<Dynamics> {
         let none = |problem: Message| Error::NoDynamics { robot: self.name().into(), problem };
         let masses = &self.parts().masses;
-        if let Some(fault) = masses.faults.first() {
-            return Err(none(fault.problem.as_str().into()));
-        }
         let numbers = self.link_numbers();
         let elements: Vec<_> = self.moving_elements().collect();
         let mut moments = vec![MassMoments::NONE; elements.len() + 1];
+        for InertiaFault { owner, problem, point } in &masses.faults {
+            let number = numbers.get(owner.as_str());
+            let stands_still = number.is_some_and(|number| self.carrier_of_link_number(*number).0 == 0);
+            match point {
+                Some(point) if stands_still => {
+                    let (_, offset) = self.carrier_of_link(owner).unwrap_or((0, Frame::IDENTITY));
+                    moments[0].add(&MassMoments::of(point).moved(&offset));
+                }
+                _ => return Err(none(problem.as_str().into())),
+            }
+        }
         for LinkInertia { link, inertia } in masses.links.iter().chain(&masses.payloads) {
             let (frame, offset) = self.carrier_of_link_number(numbers[link.as_str()]);
             moments[frame].add(&MassMoments::of(inertia).moved(&offset));

@@ -23,6 +23,8 @@ pub(crate) struct InertiaFault {
     pub owner: String,
     /// Place and reason, as a sentence.
     pub problem: String,
+    /// Mass and centre, where these are possible and the inertia matrix alone is not: all that counts of a link that stands still.
+    pub point: Option<Inertia>,
 }
 
 /// Masses of a robot. Kinematics needs none of them.

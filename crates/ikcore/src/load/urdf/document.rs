@@ -110,7 +110,9 @@ impl Document {
             capsules.insert(name.to_owned(), link_capsules::read(name, link));
             match inertial::read(name, link) {
                 Ok(inertia) => inertias.extend(inertia.map(|inertia| LinkInertia { link: name.to_owned(), inertia })),
-                Err(error) => faults.push(InertiaFault { owner: name.to_owned(), problem: error.to_string() }),
+                Err((error, point)) => {
+                    faults.push(InertiaFault { owner: name.to_owned(), problem: error.to_string(), point });
+                }
             }
         }
         names.clear();
@@ -171,7 +173,7 @@ fn read_joint(joint: Node, name: &str, faults: &mut Vec<InertiaFault>) -> Result
         velocity: number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY),
         rated: rated(joint, &owner)?,
         load: inertial::joint_load(joint, &owner).unwrap_or_else(|error| {
-            faults.push(InertiaFault { owner: owner.clone(), problem: error.to_string() });
+            faults.push(InertiaFault { owner: owner.clone(), problem: error.to_string(), point: None });
             JointLoad::default()
         }),
         has_limit: xml::children(joint, "limit").next().is_some(),

@@ -5,7 +5,7 @@ use roxmltree::Node;
 
 use super::xml;
 use crate::dynamics::Inertia;
-use crate::error::{Result, shortened};
+use crate::error::{Error, Result, shortened};
 use crate::math::pose;
 
 /// Torque limit, friction and rotor of a joint.
@@ -25,27 +25,33 @@ impl Default for JointLoad {
     }
 }
 
-/// Reads the inertia of a link; `None` without an element `inertial`.
-pub(super) fn read(link: &str, node: Node) -> Result<Option<Inertia>> {
+/// Reads the inertia of a link; `None` without an element `inertial`. The error has the mass as a point, where only the matrix is
+/// impossible.
+pub(super) fn read(link: &str, node: Node) -> Result<Option<Inertia>, (Error, Option<Inertia>)> {
     let Some(inertial) = xml::children(node, "inertial").next() else { return Ok(None) };
     let owner = format!("<inertial> of link '{}'", shortened(link));
+    let inertia = numbers(inertial, &owner).map_err(|error| (error, None))?;
+    let Some(problem) = inertia.fault() else { return Ok(Some(inertia)) };
+    let point = Inertia::point(inertia.mass, inertia.center);
+    let point = if point.fault().is_none() { Some(point) } else { None };
+    Err((xml::error_at(inertial, format!("{owner}: {problem}")), point))
+}
+
+/// Reads mass, centre and inertia matrix, possible or not.
+fn numbers(inertial: Node, owner: &str) -> Result<Inertia> {
     let (mut rpy, mut center) = ([0.0; 3], [0.0; 3]);
     if let Some(origin) = xml::children(inertial, "origin").next() {
         rpy = xml::vector(origin, "rpy", &format!("origin rpy of {owner}"))?.unwrap_or_default();
         center = xml::vector(origin, "xyz", &format!("origin xyz of {owner}"))?.unwrap_or_default();
     }
-    let mass = required(child(inertial, "mass", &owner)?, "value", &owner)?;
-    let tensor = child(inertial, "inertia", &owner)?;
-    let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| required(tensor, name, &owner));
+    let mass = required(child(inertial, "mass", owner)?, "value", owner)?;
+    let tensor = child(inertial, "inertia", owner)?;
+    let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| required(tensor, name, owner));
     let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| xml::number(tensor, name, &format!("{name} of {owner}")));
     let [xy, xz, yz] = [xy?.unwrap_or(0.0), xz?.unwrap_or(0.0), yz?.unwrap_or(0.0)];
     let matrix = Matrix3::new(xx?, xy, xz, xy, yy?, yz, xz, yz, zz?);
     let rotation = pose::from_rpy(rpy, [0.0; 3]).rotation;
-    let inertia = Inertia::turned(mass, center, rotation.matrix(), &matrix);
-    match inertia.fault() {
-        None => Ok(Some(inertia)),
-        Some(problem) => Err(xml::error_at(inertial, format!("{owner}: {problem}"))),
-    }
+    Ok(Inertia::turned(mass, center, rotation.matrix(), &matrix))
 }
 
 fn child<'a, 'x: 'a>(inertial: Node<'a, 'x>, tag: &'a str, owner: &str) -> Result<Node<'a, 'x>> {
