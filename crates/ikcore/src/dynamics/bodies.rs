@@ -69,6 +69,11 @@ impl Dynamics {
         frame.checked_sub(1).map_or(&self.base, |stage| &self.bodies[stage].moments).inertia()
     }
 
+    /// Moments of all that moves with frame `frame` > 0, in that frame.
+    pub(crate) fn moments(&self, frame: usize) -> &MassMoments {
+        &self.bodies[frame - 1].moments
+    }
+
     /// Index of the frame that frame `frame` > 0 moves on.
     pub fn parent(&self, frame: usize) -> usize {
         self.bodies[frame - 1].parent

@@ -1,7 +1,7 @@
 //! Forward dynamics: the accelerations that torques cause, from the mass matrix and its Cholesky factor.
 
 use super::bodies::Dynamics;
-use super::inverse::MotionState;
+use super::inverse::DynamicState;
 use super::scratch::DynamicsScratch;
 
 /// Square of a pivot, relative to the entry of the mass matrix, below which its joint cannot be told from the others.
@@ -24,7 +24,7 @@ impl Dynamics {
         matrix.resize(n * n, 0.0);
         bias.resize(2 * n, 0.0);
         let (rest, bias_now) = bias.split_at_mut(n);
-        self.inverse(&MotionState { q, qd, qdd: rest }, &[], scratch, bias_now);
+        self.inverse(&DynamicState { q, qd, qdd: rest }, &[], scratch, bias_now);
         self.mass_matrix(scratch, &mut matrix);
         for (torque, bias) in torques.iter_mut().zip(&*bias_now) {
             *torque -= bias;

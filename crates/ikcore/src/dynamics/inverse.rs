@@ -15,7 +15,7 @@ use crate::math::f64x4::F64x4;
 
 /// Position, velocity and acceleration of all joints; the frames belong to `q`.
 #[derive(Debug, Clone, Copy)]
-pub struct MotionState<'a> {
+pub struct DynamicState<'a> {
     /// Positions (rad, m).
     pub q: &'a [f64],
     /// Velocities (rad/s, m/s).
@@ -42,7 +42,23 @@ impl Dynamics {
     /// The torque of a rotation vector is conjugate to the rates of its entries: the power is their scalar product.
     pub fn inverse(
         &self,
-        state: &MotionState,
+        state: &DynamicState,
+        wrenches: &[AppliedWrench],
+        scratch: &mut DynamicsScratch,
+        torques: &mut [f64],
+    ) {
+        self.inverse_without_friction(state, wrenches, scratch, torques);
+        for (joint, (torque, drive)) in torques.iter_mut().zip(&self.drives).enumerate() {
+            let rate = state.qd[joint];
+            let dry = if rate == 0.0 { 0.0 } else { drive.friction.copysign(rate) };
+            *torque += drive.damping * rate + dry;
+        }
+    }
+
+    /// [`inverse`](Self::inverse) without the friction of the joints.
+    pub(crate) fn inverse_without_friction(
+        &self,
+        state: &DynamicState,
         wrenches: &[AppliedWrench],
         scratch: &mut DynamicsScratch,
         torques: &mut [f64],
@@ -50,14 +66,12 @@ impl Dynamics {
         let DynamicsScratch { frames, states, .. } = scratch;
         inverse(self, frames, state, wrenches, states, torques);
         for (joint, (torque, drive)) in torques.iter_mut().zip(&self.drives).enumerate() {
-            let (rate, acceleration) = (state.qd[joint], state.qdd[joint]);
-            let dry = if rate == 0.0 { 0.0 } else { drive.friction.copysign(rate) };
-            *torque += drive.armature * acceleration + drive.damping * rate + dry;
+            *torque += drive.armature * state.qdd[joint];
         }
     }
 
     /// Angular acceleration of the rotation vector due to its rates alone, in base axes.
-    fn vector_bias(&self, frames: &[Frame], state: &MotionState) -> [f64; 3] {
+    fn vector_bias(&self, frames: &[Frame], state: &DynamicState) -> [f64; 3] {
         let Some(vector) = &self.vector else { return [0.0; 3] };
         let (phi, rates) = (vector.phi(state.q), vector.phi(state.qd));
         let start = frames[vector.first].then::<NoFma>(&vector.start);
@@ -70,7 +84,7 @@ by_instructions! {
     fn inverse(
         dynamics: &Dynamics,
         frames: &[Frame],
-        state: &MotionState,
+        state: &DynamicState,
         wrenches: &[AppliedWrench],
         states: &mut [BodyState],
         torques: &mut [f64],
@@ -90,7 +104,7 @@ by_instructions! {
 
 /// Outward pass: motion of each body, and the force and moment that it needs.
 #[inline(always)]
-fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &MotionState, states: &mut [BodyState]) {
+fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &DynamicState, states: &mut [BodyState]) {
     let first_of_vector = dynamics.vector.as_ref().map_or(usize::MAX, |vector| vector.first);
     states[0] = BodyState { acceleration: -F64x4::from_vector(&dynamics.gravity), ..BodyState::REST };
     for (i, body) in dynamics.bodies.iter().enumerate() {
@@ -102,8 +116,7 @@ fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &MotionS
         let carrier = if motion.of_vector { states[first_of_vector].turn } else { parent.turn };
         let swept = A::cross_x4(carrier, axes[2]);
         let turn = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * rate), parent.turn);
-        let mut turn_rate =
-            A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * acceleration), parent.turn_rate);
+        let mut turn_rate = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * acceleration), parent.turn_rate);
         turn_rate = A::mul_add_x4(swept, F64x4::splat(motion.turn_scale * rate), turn_rate);
         if first_of_vector.wrapping_add(3) == i {
             turn_rate = A::add_x4(turn_rate, F64x4::from_vector(&dynamics.vector_bias(frames, state)));

@@ -29,6 +29,6 @@ mod wide_vectors;
 pub(crate) use bodies::MovingBody;
 pub use bodies::{Dynamics, JointDrive};
 pub use inertia::Inertia;
-pub use inverse::{AppliedWrench, MotionState};
+pub use inverse::{AppliedWrench, DynamicState};
 pub(crate) use mass_moments::MassMoments;
 pub use scratch::DynamicsScratch;

@@ -1,7 +1,7 @@
 //! Torques, mass matrices and accelerations, in row-major arrays: one row is one configuration.
 
 use super::model::Robot;
-use crate::dynamics::{AppliedWrench, Dynamics, DynamicsScratch, MotionState};
+use crate::dynamics::{AppliedWrench, Dynamics, DynamicsScratch, DynamicState};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;
@@ -22,23 +22,9 @@ pub struct Motions<'a> {
 }
 
 impl Robot {
-    /// Scratch memory for [`write_torques`](Self::write_torques) and the kernels of [`Dynamics`].
+    /// Scratch memory for the kernels of [`Dynamics`]. Its frames are written by [`write_frames`](Self::write_frames).
     pub(crate) fn dynamics_scratch(&self, dynamics: &Dynamics) -> DynamicsScratch {
         DynamicsScratch::new(dynamics, self.frame_buffer())
-    }
-
-    /// Writes the joint torques (N m, or N for prismatic joints) that cause the motion `state`, friction included, by the bodies of
-    /// [`dynamics`](Self::dynamics). All rows have n finite entries; nothing is allocated.
-    #[inline]
-    pub(crate) fn write_torques(
-        &self,
-        dynamics: &Dynamics,
-        state: &MotionState,
-        scratch: &mut DynamicsScratch,
-        torques: &mut [f64],
-    ) {
-        self.write_frames(state.q, &mut scratch.frames);
-        dynamics.inverse(state, &[], scratch, torques);
     }
 
     /// Joint torques (m, n) (N m, or N for prismatic joints) that cause the motions, friction included. At rest they hold the arm up.
@@ -66,7 +52,7 @@ impl Robot {
         let (tips, mut applied) = (self.tip_count(), vec![]);
         for (row, (q, torques)) in rows.zip(out).enumerate() {
             checkpoint_at(row)?;
-            let state = MotionState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
+            let state = DynamicState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
             self.write_frames(q, &mut scratch.frames);
             applied.clear();
             let first = if wrenches.len() > tips { row * tips } else { 0 };

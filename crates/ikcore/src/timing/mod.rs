@@ -12,6 +12,7 @@
 //! | `velocity_curve` | the velocity limits |
 //! | `strips` | the acceleration limits |
 //! | `tip_segments` | the limits of tips over segments |
+//! | `torque_segments` | the limits of joint torques over segments |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
@@ -40,6 +41,7 @@ mod strips;
 mod time_optimal;
 mod time_scaling;
 mod tip_segments;
+mod torque_segments;
 mod tube;
 mod velocity_curve;
 mod violation;

@@ -11,6 +11,7 @@ use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
 use super::strips::{Line, Strips};
 use super::tip_segments::TipSegments;
+use super::torque_segments::TorqueSegments;
 use super::velocity_curve::maximum_velocity_curve;
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
@@ -30,7 +31,7 @@ impl SpeedProfile {
     /// Computes the fastest profile on these `segments` that starts and ends in these ranges.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] if the speeds at the ends are not possible.
+    /// [`Error::Infeasible`] if the speeds at the ends are not possible, or a joint cannot hold the arm.
     pub(super) fn fastest(
         path: &JointPath,
         limits: &ConstantLimits,
@@ -43,8 +44,9 @@ impl SpeedProfile {
         let tips = limits.tips.as_ref().map(|rates| TipSegments::new(path, &segments, rates)).transpose()?;
         let velocity_curve = maximum_velocity_curve(path, limits, &segments, tips.as_ref(), &mut derivatives);
         let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
+        let torques = TorqueSegments::new(path, &segments, &velocity_curve, limits)?;
         let (derivatives, strips, segments_of) = (&mut derivatives, &mut strips, &segments[..]);
-        let mut pass = Pass { path, limits, segments: segments_of, tips, derivatives, strips };
+        let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
         Ok(Self { segments, squared_speeds })
@@ -68,6 +70,7 @@ struct Pass<'a> {
     segments: &'a [Segment],
     /// Tips whose acceleration is limited.
     tips: Option<TipSegments<'a>>,
+    torques: Option<TorqueSegments<'a>>,
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
 }
@@ -80,6 +83,9 @@ impl Pass<'_> {
         self.strips.fill(self.derivatives, segment.length, self.limits);
         if let Some(tips) = &self.tips {
             self.strips.add(tips, i);
+        }
+        if let Some(torques) = &self.torques {
+            self.strips.bound(torques, i);
         }
         segment
     }

@@ -1,12 +1,13 @@
 //! The acceleration limits over one segment, in the plane of x = (ds/dt)^2 at its start and u = d2s/dt2 on it.
 //!
-//! Each limit is a strip |a u + b x| <= c. For a given x the strips leave an interval of u, between the lowest of their
+//! Each limit of an acceleration is a strip |a u + b x| <= c; those of joint torques are half-planes. For a given x the strips leave an interval of u, between the lowest of their
 //! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
 //! convex.
 
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::tip_segments::TipSegments;
+use super::torque_segments::TorqueSegments;
 
 /// The line u = offset - slope x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +28,8 @@ impl Line {
 pub(super) struct Strips {
     offsets: Vec<f64>,
     slopes: Vec<f64>,
+    /// Lines that bound u from above and from below, not in pairs.
+    bounds: [Vec<Line>; 2],
     /// The bound on x from strips that do not bound u.
     pub largest_x: f64,
     /// The largest u from rest.
@@ -42,6 +45,7 @@ impl Strips {
         Self {
             offsets: vec![0.0; 3 * joints],
             slopes: vec![0.0; 3 * joints],
+            bounds: [vec![], vec![]],
             largest_x: f64::INFINITY,
             launch: f64::INFINITY,
         }
@@ -55,6 +59,7 @@ impl Strips {
         let n = limits.acceleration.len();
         self.offsets.truncate(3 * n);
         self.slopes.truncate(3 * n);
+        self.bounds.iter_mut().for_each(Vec::clear);
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
@@ -94,6 +99,26 @@ impl Strips {
         });
     }
 
+    /// Adds the half-planes of joint torques over a segment.
+    pub(super) fn bound(&mut self, torques: &TorqueSegments<'_>, segment: usize) {
+        let mut largest = 0.0_f64;
+        torques.half_planes(segment, |[a, ..]| largest = largest.max(a.abs()));
+        let [above, below] = &mut self.bounds;
+        torques.half_planes(segment, |[a, b, c]| {
+            if a.abs() <= NEGLIGIBLE_SLOPE * largest {
+                self.largest_x = self.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
+                return;
+            }
+            let line = Line { offset: c / a, slope: b / a };
+            if a > 0.0 {
+                above.push(line);
+                self.launch = self.launch.min(line.offset);
+            } else {
+                below.push(line);
+            }
+        });
+    }
+
     /// The lowest upper line at `x`.
     pub(super) fn upper(&self, x: f64) -> Line {
         self.tightest(x)[0]
@@ -110,6 +135,17 @@ impl Strips {
             }
             if -offset - middle > lower.0 {
                 lower = (-offset - middle, Line { offset: -offset, slope });
+            }
+        }
+        let [above, below] = &self.bounds;
+        for line in above {
+            if line.at(x) < upper.0 {
+                upper = (line.at(x), *line);
+            }
+        }
+        for line in below {
+            if line.at(x) > lower.0 {
+                lower = (line.at(x), *line);
             }
         }
         [upper.1, lower.1]
