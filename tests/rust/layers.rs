@@ -32,7 +32,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
     ("units", &["kinematics", "shape", "robot", "limits"]),
-    ("load", &["kinematics", "shape", "robot", "units"]),
+    ("load", &["kinematics", "dynamics", "shape", "robot", "units"]),
     ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),

@@ -153,6 +153,16 @@ pub enum Error {
         /// The reason, with advice.
         problem: Message,
     },
+    /// Accelerations are not determined: some joints can move without moving mass.
+    #[error("configuration {row}: the mass matrix of robot '{robot}' is singular: joint '{joint}' and those before it can move without moving mass")]
+    SingularMassMatrix {
+        /// The robot's name.
+        robot: String,
+        /// Index of the configuration.
+        row: usize,
+        /// The joint's name.
+        joint: String,
+    },
     /// An inertia that no body has.
     #[error("{what}: {problem}")]
     ImpossibleInertia {

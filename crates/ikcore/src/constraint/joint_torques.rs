@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::joint_span::JointSpan;
 use super::largest_factor::{IntervalFactor, TIGHT, largest_factor};
 use super::torque_bend::{BendScratch, Rest, TorqueBend};
-use crate::dynamics::{Dynamics, DynamicsScratch, MotionState};
+use crate::dynamics::{Dynamics, DynamicsScratch, DynamicState};
 use crate::error::{Error, Result};
 use crate::limits::ROUNDING;
 use crate::math::majorant::Majorant;
@@ -158,7 +158,7 @@ impl JointTorques {
         } else {
             &*zero
         };
-        self.dynamics.inverse_without_friction(&MotionState { q, qd, qdd }, &[], scratch, torques);
+        self.dynamics.inverse_without_friction(&DynamicState { q, qd, qdd }, &[], scratch, torques);
     }
 
     /// Writes the rests of all joints over an interval on which the derivatives of the joints' positions have these majorants and the joints

@@ -36,6 +36,8 @@ pub struct Dynamics {
     pub(super) base: MassMoments,
     /// Bodies of the frames from 1 on.
     pub(super) bodies: Vec<MovingBody>,
+    /// Mass of all that each frame carries (kg).
+    pub(super) carried: Vec<f64>,
     /// Acceleration of free fall in base axes (m/s^2).
     pub(super) gravity: [f64; 3],
     pub(super) drives: Vec<JointDrive>,
@@ -50,7 +52,11 @@ impl Dynamics {
         drives: Vec<JointDrive>,
         vector: Option<RotationVector>,
     ) -> Self {
-        Self { base, bodies, gravity, drives, vector }
+        let mut carried: Vec<f64> = std::iter::once(&base).chain(bodies.iter().map(|body| &body.moments)).map(|m| m.mass).collect();
+        for (i, body) in bodies.iter().enumerate().rev() {
+            carried[body.parent] += carried[i + 1];
+        }
+        Self { base, bodies, carried, gravity, drives, vector }
     }
 
     /// Number of frames: one more than there are moving bodies.
@@ -76,6 +82,23 @@ impl Dynamics {
     /// Motion of frame `frame` > 0 on its parent.
     pub(crate) fn motion(&self, frame: usize) -> &Transmission {
         &self.bodies[frame - 1].motion
+    }
+
+    /// Mass of all that frame `frame` carries (kg).
+    pub fn carried_mass(&self, frame: usize) -> f64 {
+        self.carried[frame]
+    }
+
+    /// Returns the first joint that moves neither a mass nor a rotor: the mass matrix is singular everywhere.
+    pub(crate) fn joint_without_mass(&self) -> Option<usize> {
+        let moves = |(joint, drive): (usize, &JointDrive)| {
+            let mut stages = self.bodies.iter().zip(&self.carried[1..]);
+            drive.armature > 0.0
+                || stages.any(|(body, carried)| {
+                    body.motion.joint == joint && body.motion.scale() != 0.0 && *carried > 0.0
+                })
+        };
+        self.drives.iter().enumerate().find(|each| !moves(*each)).map(|(joint, _)| joint)
     }
 
     /// Acceleration of free fall in base axes (m/s^2).

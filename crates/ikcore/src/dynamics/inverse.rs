@@ -4,19 +4,18 @@
 //! of each of its points, a + W x. The body with moments m, h, S about its origin needs the force m a + W h and the moment
 //! h x a + (sum over k of r_k x (W R S)_k), with R = (r_1, r_2, r_3) the axes of its frame: the antisymmetric part of W R S R'.
 
-use smallvec::SmallVec;
-
 use super::bodies::Dynamics;
 use super::rotation_vector_rate::rate_of_left_jacobian;
+use super::scratch::{BodyState, DynamicsScratch};
+use super::wide_vectors::{axes_of, dot, lever, product, products};
 use crate::kinematics::Wrench;
-use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
 
 /// Position, velocity and acceleration of all joints; the frames belong to `q`.
 #[derive(Debug, Clone, Copy)]
-pub struct MotionState<'a> {
+pub struct DynamicState<'a> {
     /// Positions (rad, m).
     pub q: &'a [f64],
     /// Velocities (rad/s, m/s).
@@ -36,43 +35,6 @@ pub struct AppliedWrench {
     pub wrench: Wrench,
 }
 
-/// Motion of a body, and the load that its stage passes on.
-#[derive(Debug, Clone, Copy)]
-struct BodyState {
-    /// Angular velocity and angular acceleration.
-    turn: F64x4,
-    turn_rate: F64x4,
-    /// Columns of W.
-    spread: [F64x4; 3],
-    /// Acceleration of the origin, less that of free fall.
-    acceleration: F64x4,
-    /// Force, and moment about the origin.
-    force: F64x4,
-    moment: F64x4,
-}
-
-const ZERO: F64x4 = F64x4::ZERO;
-
-impl BodyState {
-    const REST: Self =
-        Self { turn: ZERO, turn_rate: ZERO, spread: [ZERO; 3], acceleration: ZERO, force: ZERO, moment: ZERO };
-}
-
-/// Scratch memory of the kernels, to be reused from call to call.
-#[derive(Debug, Clone)]
-pub struct DynamicsScratch {
-    /// Frames of all stages.
-    pub(crate) frames: FrameBuffer,
-    states: SmallVec<[BodyState; 16]>,
-}
-
-impl DynamicsScratch {
-    /// Creates the scratch memory for these bodies; `frames` is as long as the kinematic kernels need.
-    pub(crate) fn new(dynamics: &Dynamics, frames: FrameBuffer) -> Self {
-        Self { frames, states: SmallVec::from_elem(BodyState::REST, dynamics.frames()) }
-    }
-}
-
 impl Dynamics {
     /// Writes the joint torques (N m, or N for prismatic joints) that cause the motion `state`, with the frames of all stages in
     /// `scratch`. `wrenches` act on the robot from outside. Dry friction acts only on joints that move.
@@ -80,7 +42,7 @@ impl Dynamics {
     /// The torque of a rotation vector is conjugate to the rates of its entries: the power is their scalar product.
     pub fn inverse(
         &self,
-        state: &MotionState,
+        state: &DynamicState,
         wrenches: &[AppliedWrench],
         scratch: &mut DynamicsScratch,
         torques: &mut [f64],
@@ -96,12 +58,12 @@ impl Dynamics {
     /// [`inverse`](Self::inverse) without the friction of the joints.
     pub(crate) fn inverse_without_friction(
         &self,
-        state: &MotionState,
+        state: &DynamicState,
         wrenches: &[AppliedWrench],
         scratch: &mut DynamicsScratch,
         torques: &mut [f64],
     ) {
-        let DynamicsScratch { frames, states } = scratch;
+        let DynamicsScratch { frames, states, .. } = scratch;
         inverse(self, frames, state, wrenches, states, torques);
         for (joint, (torque, drive)) in torques.iter_mut().zip(&self.drives).enumerate() {
             *torque += drive.armature * state.qdd[joint];
@@ -109,7 +71,7 @@ impl Dynamics {
     }
 
     /// Angular acceleration of the rotation vector due to its rates alone, in base axes.
-    fn vector_bias(&self, frames: &[Frame], state: &MotionState) -> [f64; 3] {
+    fn vector_bias(&self, frames: &[Frame], state: &DynamicState) -> [f64; 3] {
         let Some(vector) = &self.vector else { return [0.0; 3] };
         let (phi, rates) = (vector.phi(state.q), vector.phi(state.qd));
         let start = frames[vector.first].then::<NoFma>(&vector.start);
@@ -122,7 +84,7 @@ by_instructions! {
     fn inverse(
         dynamics: &Dynamics,
         frames: &[Frame],
-        state: &MotionState,
+        state: &DynamicState,
         wrenches: &[AppliedWrench],
         states: &mut [BodyState],
         torques: &mut [f64],
@@ -142,13 +104,13 @@ by_instructions! {
 
 /// Outward pass: motion of each body, and the force and moment that it needs.
 #[inline(always)]
-fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &MotionState, states: &mut [BodyState]) {
+fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &DynamicState, states: &mut [BodyState]) {
     let first_of_vector = dynamics.vector.as_ref().map_or(usize::MAX, |vector| vector.first);
     states[0] = BodyState { acceleration: -F64x4::from_vector(&dynamics.gravity), ..BodyState::REST };
     for (i, body) in dynamics.bodies.iter().enumerate() {
         let (parent, motion) = (&states[body.parent], &body.motion);
         let frame = &frames[i + 1];
-        let axes = frame.axes.map(|axis| F64x4::from_vector(&axis));
+        let axes = axes_of(frame);
         let (rate, acceleration) = (state.qd[motion.joint], state.qdd[motion.joint]);
         // The axes of a rotation vector turn with the body before it.
         let carrier = if motion.of_vector { states[first_of_vector].turn } else { parent.turn };
@@ -164,14 +126,14 @@ fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &MotionS
         of_origin = A::mul_add_x4(axes[2], F64x4::splat(motion.slide_scale * acceleration), of_origin);
         of_origin = A::mul_add_x4(swept, F64x4::splat(2.0 * motion.slide_scale * rate), of_origin);
         let spread = spread(turn, turn_rate);
-        let of_axes = axes.map(|axis| product::<A>(&spread, &axis.vector()));
+        let of_axes = products::<A>(&spread, &frame.axes);
         let moments = &body.moments;
         let first = product::<A>(&axes, &moments.first);
         let force = A::mul_add_x4(of_origin, F64x4::splat(moments.mass), product::<A>(&of_axes, &moments.first));
         let mut moment = A::cross_x4(first, of_origin);
-        for k in 0..3 {
-            moment = A::add_x4(moment, A::cross_x4(axes[k], product::<A>(&of_axes, &moments.second[k])));
-        }
+        let [x, y, z] = products::<A>(&of_axes, &moments.second);
+        moment = A::add_x4(moment, A::cross_x4(axes[0], x));
+        moment = A::add_x4(moment, A::add_x4(A::cross_x4(axes[1], y), A::cross_x4(axes[2], z)));
         states[i + 1] = BodyState { turn, turn_rate, spread, acceleration: of_origin, force, moment };
     }
 }
@@ -204,23 +166,4 @@ fn spread(turn: F64x4, turn_rate: F64x4) -> [F64x4; 3] {
         F64x4([xy - c, -(xx + zz), yz + a, 0.0]),
         F64x4([zx + b, yz - a, -(xx + yy), 0.0]),
     ]
-}
-
-/// Returns the product of the matrix with these columns and a vector.
-#[inline(always)]
-fn product<A: Arithmetic>(columns: &[F64x4; 3], v: &[f64; 3]) -> F64x4 {
-    let along_x = A::mul_x4(columns[0], F64x4::splat(v[0]));
-    A::mul_add_x4(columns[2], F64x4::splat(v[2]), A::mul_add_x4(columns[1], F64x4::splat(v[1]), along_x))
-}
-
-/// Returns the vector from the origin of `parent` to that of `frame`.
-#[inline(always)]
-fn lever(frame: &Frame, parent: &Frame) -> [f64; 3] {
-    let (to, from) = (&frame.origin, &parent.origin);
-    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
-}
-
-#[inline(always)]
-fn dot(a: &[f64; 3], b: F64x4) -> f64 {
-    a[0] * b.0[0] + a[1] * b.0[1] + a[2] * b.0[2]
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::masses::{LinkInertia, Masses};
+use super::joint::Joint;
+use super::masses::{InertiaFault, LinkInertia, Masses};
 use super::model::Robot;
-use crate::dynamics::{Dynamics, DynamicsScratch, Inertia, JointDrive, MassMoments, MotionState, MovingBody};
+use crate::dynamics::{Dynamics, Inertia, JointDrive, MassMoments, MovingBody};
 use crate::error::{Error, Result, require_finite};
 use crate::math::Frame;
 use crate::message::{Message, Setting, message};
@@ -42,8 +43,8 @@ impl Robot {
         let mut masses = (*self.parts().masses).clone();
         for (link, inertia) in inertias {
             self.link_number(link)?;
-            require_possible(&format!("inertia of link '{link}'"), &inertia)?;
-            masses.faults.retain(|fault| fault.link != link);
+            inertia.require_possible(&format!("inertia of link '{link}'"))?;
+            masses.faults.retain(|fault| fault.owner != link);
             put(&mut masses.links, link, inertia);
         }
         Ok(self.with_masses(masses))
@@ -55,7 +56,7 @@ impl Robot {
     /// # Errors
     /// [`Error::UnknownLink`]; [`Error::ImpossibleInertia`]; [`Error::SeveralTips`] without a link.
     pub fn with_payload(&self, link: Option<&str>, inertia: Inertia) -> Result<Self> {
-        require_possible("payload", &inertia)?;
+        inertia.require_possible("payload")?;
         let (link, inertia) = match link {
             Some(link) => (link, inertia),
             None => {
@@ -82,34 +83,23 @@ impl Robot {
         Ok(self.with_masses(Masses { gravity, ..(*self.parts().masses).clone() }))
     }
 
-    /// Scratch memory for [`write_inverse_dynamics`](Self::write_inverse_dynamics).
-    pub(crate) fn dynamics_scratch(&self, dynamics: &Dynamics) -> DynamicsScratch {
-        DynamicsScratch::new(dynamics, self.frame_buffer())
-    }
-
-    /// Writes the joint torques (N m, or N for prismatic joints) that cause the motion `state`, friction included; all entries
-    /// are finite, n each.
-    #[inline]
-    pub(crate) fn write_inverse_dynamics(
-        &self,
-        dynamics: &Dynamics,
-        state: &MotionState,
-        scratch: &mut DynamicsScratch,
-        torques: &mut [f64],
-    ) {
-        self.write_frames(state.q, &mut scratch.frames);
-        dynamics.inverse(state, &[], scratch, torques);
-    }
-
     fn folded_dynamics(&self) -> Result<Dynamics> {
         let none = |problem: Message| Error::NoDynamics { robot: self.name().into(), problem };
         let masses = &self.parts().masses;
-        if let Some(fault) = masses.faults.first() {
-            return Err(none(fault.problem.as_str().into()));
-        }
         let numbers = self.link_numbers();
         let elements: Vec<_> = self.moving_elements().collect();
         let mut moments = vec![MassMoments::NONE; elements.len() + 1];
+        for InertiaFault { owner, problem, point } in &masses.faults {
+            let number = numbers.get(owner.as_str());
+            let stands_still = number.is_some_and(|number| self.carrier_of_link_number(*number).0 == 0);
+            match point {
+                Some(point) if stands_still => {
+                    let (_, offset) = self.carrier_of_link(owner).unwrap_or((0, Frame::IDENTITY));
+                    moments[0].add(&MassMoments::of(point).moved(&offset));
+                }
+                _ => return Err(none(problem.as_str().into())),
+            }
+        }
         for LinkInertia { link, inertia } in masses.links.iter().chain(&masses.payloads) {
             let (frame, offset) = self.carrier_of_link_number(numbers[link.as_str()]);
             moments[frame].add(&MassMoments::of(inertia).moved(&offset));
@@ -123,36 +113,20 @@ impl Robot {
             moments: *moments,
         });
         let bodies: Vec<MovingBody> = bodies.collect();
-        let drive = |joint: &super::Joint| JointDrive {
+        let drive = |joint: &Joint| JointDrive {
             damping: joint.damping,
             friction: joint.friction,
             armature: joint.armature,
         };
         let drives: Vec<JointDrive> = self.joints().iter().map(drive).collect();
-        if let Some(joint) = joint_without_mass(&bodies, &drives) {
-            let name = &self.joints()[joint].name;
-            return Err(none(message![format!("joint '{name}' moves no mass: give "), Setting::Inertias]));
+        let dynamics = Dynamics::new(moments[0], bodies, masses.gravity, drives, self.chain().vector.clone());
+        match dynamics.joint_without_mass() {
+            None => Ok(dynamics),
+            Some(joint) => {
+                let name = &self.joints()[joint].name;
+                Err(none(message![format!("joint '{name}' moves no mass: give "), Setting::Inertias]))
+            }
         }
-        Ok(Dynamics::new(moments[0], bodies, masses.gravity, drives, self.chain().vector.clone()))
-    }
-}
-
-/// Returns the first joint that moves neither a mass nor a rotor.
-fn joint_without_mass(bodies: &[MovingBody], drives: &[JointDrive]) -> Option<usize> {
-    let mut moves: Vec<bool> = drives.iter().map(|drive| drive.armature > 0.0).collect();
-    let mut carried: Vec<f64> = std::iter::once(0.0).chain(bodies.iter().map(|body| body.moments.mass)).collect();
-    for (i, body) in bodies.iter().enumerate().rev() {
-        carried[body.parent] += carried[i + 1];
-        let is_driven = body.motion.scale() != 0.0;
-        moves[body.motion.joint] |= is_driven && carried[i + 1] > 0.0;
-    }
-    moves.iter().position(|moves| !moves)
-}
-
-fn require_possible(what: &str, inertia: &Inertia) -> Result<()> {
-    match inertia.fault() {
-        None => Ok(()),
-        Some(problem) => Err(Error::ImpossibleInertia { what: what.into(), problem }),
     }
 }
 

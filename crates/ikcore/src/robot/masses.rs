@@ -19,9 +19,12 @@ pub struct LinkInertia {
 /// Inertia that a file gives and no body can have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InertiaFault {
-    pub link: String,
+    /// Name of the link; of a joint, "joint 'name'".
+    pub owner: String,
     /// Place and reason, as a sentence.
     pub problem: String,
+    /// Mass and centre, where these are possible and the inertia matrix alone is not: all that counts of a link that stands still.
+    pub point: Option<Inertia>,
 }
 
 /// Masses of a robot. Kinematics needs none of them.

@@ -17,6 +17,7 @@
 //! | `mobile_base` | a robot on a base that moves |
 //! | `measured_geometry` | a robot with other transforms and offsets, as a calibration finds them |
 //! | `masses`, `dynamics` | masses of the links, payloads and gravity, folded into moving bodies |
+//! | `torques` | torques, mass matrices and accelerations of one configuration, and of many |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
@@ -51,6 +52,7 @@ mod serialization;
 mod stance;
 mod tip_chain;
 mod tips;
+mod torques;
 mod upright_axis;
 mod visual;
 mod wrapped;
@@ -69,6 +71,7 @@ pub(crate) use masses::{InertiaFault, Masses};
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;
+pub use torques::Motions;
 pub use upright_axis::UprightAxis;
 pub use visual::{Visual, VisualShape};
 

@@ -215,7 +215,7 @@ fn times_parameter([start, middle, end]: [f64; 3], [from, to]: [f64; 2]) -> [f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::{Inertia, MotionState};
+    use crate::dynamics::{Inertia, DynamicState};
     use crate::limits::{Field, Limits, Profile};
     use crate::math::cubic_spline::SplineEnds;
     use crate::rng::{self, LazyRng};
@@ -265,7 +265,7 @@ mod tests {
         let mut largest = 0.0_f64;
         for i in 0..=10_000 {
             motion.at(motion.duration() * f64::from(i) / 1e4, &mut q, &mut qd, &mut qdd).unwrap();
-            let state = MotionState { q: &q, qd: &qd, qdd: &qdd };
+            let state = DynamicState { q: &q, qd: &qd, qdd: &qdd };
             robot.write_frames(&q, &mut scratch.frames);
             dynamics.inverse_without_friction(&state, &[], &mut scratch, &mut torques);
             for (torque, limit) in torques.iter().zip(torque) {
