@@ -154,7 +154,9 @@ pub enum Error {
         problem: Message,
     },
     /// Accelerations are not determined: some joints can move without moving mass.
-    #[error("configuration {row}: the mass matrix of robot '{robot}' is singular: joint '{joint}' and those before it can move without moving mass")]
+    #[error(
+        "configuration {row}: the mass matrix of robot '{robot}' is singular: joint '{joint}' and those before it can move without moving mass"
+    )]
     SingularMassMatrix {
         /// The robot's name.
         robot: String,

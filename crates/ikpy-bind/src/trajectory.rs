@@ -194,12 +194,7 @@ impl PyTrajectory {
     ///
     /// Raises:
     ///     InvalidInputError: a robot without dynamics, or with another number of joints.
-    fn torques<'py>(
-        &self,
-        py: Python<'py>,
-        robot: PyRef<'_, PyRobot>,
-        t: &Bound<'py, PyAny>,
-    ) -> PyResult<Array<'py>> {
+    fn torques<'py>(&self, py: Python<'py>, robot: PyRef<'_, PyRobot>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         self.torques_of(py, &robot.core, t)
     }
 

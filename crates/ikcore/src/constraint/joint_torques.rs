@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::joint_span::JointSpan;
 use super::largest_factor::{IntervalFactor, TIGHT, largest_factor};
 use super::torque_bend::{BendScratch, Rest, TorqueBend};
-use crate::dynamics::{Dynamics, DynamicsScratch, DynamicState};
+use crate::dynamics::{DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result};
 use crate::limits::ROUNDING;
 use crate::math::majorant::Majorant;

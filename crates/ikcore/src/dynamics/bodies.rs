@@ -52,7 +52,8 @@ impl Dynamics {
         drives: Vec<JointDrive>,
         vector: Option<RotationVector>,
     ) -> Self {
-        let mut carried: Vec<f64> = std::iter::once(&base).chain(bodies.iter().map(|body| &body.moments)).map(|m| m.mass).collect();
+        let mut carried: Vec<f64> =
+            std::iter::once(&base).chain(bodies.iter().map(|body| &body.moments)).map(|m| m.mass).collect();
         for (i, body) in bodies.iter().enumerate().rev() {
             carried[body.parent] += carried[i + 1];
         }
@@ -79,11 +80,6 @@ impl Dynamics {
         self.bodies[frame - 1].parent
     }
 
-    /// Motion of frame `frame` > 0 on its parent.
-    pub(crate) fn motion(&self, frame: usize) -> &Transmission {
-        &self.bodies[frame - 1].motion
-    }
-
     /// Mass of all that frame `frame` carries (kg).
     pub fn carried_mass(&self, frame: usize) -> f64 {
         self.carried[frame]
@@ -94,9 +90,8 @@ impl Dynamics {
         let moves = |(joint, drive): (usize, &JointDrive)| {
             let mut stages = self.bodies.iter().zip(&self.carried[1..]);
             drive.armature > 0.0
-                || stages.any(|(body, carried)| {
-                    body.motion.joint == joint && body.motion.scale() != 0.0 && *carried > 0.0
-                })
+                || stages
+                    .any(|(body, carried)| body.motion.joint == joint && body.motion.scale() != 0.0 && *carried > 0.0)
         };
         self.drives.iter().enumerate().find(|each| !moves(*each)).map(|(joint, _)| joint)
     }

@@ -113,11 +113,8 @@ impl Robot {
             moments: *moments,
         });
         let bodies: Vec<MovingBody> = bodies.collect();
-        let drive = |joint: &Joint| JointDrive {
-            damping: joint.damping,
-            friction: joint.friction,
-            armature: joint.armature,
-        };
+        let drive =
+            |joint: &Joint| JointDrive { damping: joint.damping, friction: joint.friction, armature: joint.armature };
         let drives: Vec<JointDrive> = self.joints().iter().map(drive).collect();
         let dynamics = Dynamics::new(moments[0], bodies, masses.gravity, drives, self.chain().vector.clone());
         match dynamics.joint_without_mass() {

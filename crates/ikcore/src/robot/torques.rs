@@ -1,7 +1,7 @@
 //! Torques, mass matrices and accelerations, in row-major arrays: one row is one configuration.
 
 use super::model::Robot;
-use crate::dynamics::{AppliedWrench, Dynamics, DynamicsScratch, DynamicState};
+use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;

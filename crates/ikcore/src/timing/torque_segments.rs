@@ -215,7 +215,7 @@ fn times_parameter([start, middle, end]: [f64; 3], [from, to]: [f64; 2]) -> [f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::{Inertia, DynamicState};
+    use crate::dynamics::{DynamicState, Inertia};
     use crate::limits::{Field, Limits, Profile};
     use crate::math::cubic_spline::SplineEnds;
     use crate::rng::{self, LazyRng};

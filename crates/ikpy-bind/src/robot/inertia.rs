@@ -90,11 +90,7 @@ impl PyInertia {
 }
 
 /// Reads an inertia; nothing is checked but shapes.
-pub fn inertia(
-    mass: f64,
-    center: Option<&Bound<'_, PyAny>>,
-    matrix: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Inertia> {
+pub fn inertia(mass: f64, center: Option<&Bound<'_, PyAny>>, matrix: Option<&Bound<'_, PyAny>>) -> PyResult<Inertia> {
     let center = center.map_or(Ok([0.0; 3]), |center| point("center", center))?;
     // Row by row: a matrix of the core holds columns.
     let matrix = matrix.map(|matrix| matrix3("matrix", matrix)).transpose()?;
