@@ -435,7 +435,7 @@ WRONG: list[tuple[Any, str]] = [
         lambda: PANDA.with_payload(1.0, matrix=[[1, 1, 0], [0, 1, 0], [0, 0, 1]]),
         "payload: the inertia matrix is not symmetric: xy = 1 differs from yx = 0",
     ),
-    (lambda: PANDA.with_payload(1.0, center=[0, 0]), "center: expected shape (3,), got (2,)"),
+    (lambda: PANDA.with_payload(1.0, center=[0, 0]), "centre: expected shape (3,), got (2,)"),
     (lambda: PANDA.with_payload(1.0, matrix=[1, 1, 1]), "matrix: expected shape (3, 3), got (3,)"),
     (lambda: PANDA.with_gravity([0, 0, np.nan]), "gravity must be finite, but entry 2 is NaN"),
     (lambda: bik.Inertia("rod", -2.0), "inertia of link 'rod': the mass is -2 kg: it cannot be negative"),
