@@ -136,7 +136,7 @@ impl JointTorques {
     }
 
     /// Writes what holds the arm at a point.
-    fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
+    pub(super) fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
         self.robot.write_frames(&at.q, &mut at.scratch.frames);
         self.inverse(at, [false, false, false], hold);
     }

@@ -12,6 +12,7 @@
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `joint_span` | intervals of joint motions |
 //! | `joint_torques`, `torque_bend` | limits of joint torques; how far torques get off parabolas |
+//! | `hold_check` | whether joints can hold the arm along straight lines |
 //! | `largest_factor` | the largest factor by which a motion exceeds limits, from bounds over intervals |
 //! | `onto` | configurations moved to where constraints hold |
 //! | `tip_jet` | velocity and turn rate of a tip over an interval |
@@ -19,6 +20,7 @@
 
 mod drift;
 mod gauge;
+mod hold_check;
 mod joint_span;
 mod joint_torques;
 mod keep;
@@ -30,6 +32,7 @@ mod tip_jet;
 mod tip_rates;
 mod torque_bend;
 
+pub(crate) use hold_check::HoldCheck;
 pub(crate) use joint_span::JointSpan;
 pub(crate) use joint_torques::{JointTorques, TooHeavy, TorqueExcess, TorquePoint, TorqueTerms, control_points};
 pub use keep::Keep;

@@ -1,17 +1,18 @@
 //! Constant limits of each joint, for planners and timings.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::joint_path::JointPath;
 use super::violation::Violation;
-use crate::constraint::{JointTorques, TIGHT, TipExcess, TipRates, TorqueExcess};
+use crate::constraint::{HoldCheck, JointTorques, TIGHT, TipExcess, TipRates, TooHeavy, TorqueExcess};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
 use crate::trajectory::Trajectory;
-use crate::wording::named_joints;
+use crate::wording::{named_joints, number};
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -198,6 +199,16 @@ impl ConstantLimits {
     pub(crate) fn refuse_tips(&self, method: impl Into<Message>) -> Result<()> {
         let remedy = message!["add them with ", Setting::Retime];
         self.tips.as_ref().map_or(Ok(()), |tips| tips.limits().refuse(&TipField::ALL, method, remedy))
+    }
+
+    /// Whether any joint has a torque limit.
+    pub(crate) fn limit_torque(&self) -> bool {
+        self.torques.is_some()
+    }
+
+    /// These limits without those of torques.
+    pub(super) fn without_torque(&self) -> Cow<'_, Self> {
+        if self.torques.is_none() { Cow::Borrowed(self) } else { Cow::Owned(Self { torques: None, ..self.clone() }) }
     }
 
     /// Checks that no joint has a torque limit, which `method` cannot keep.
@@ -396,6 +407,12 @@ impl ConstantLimits {
         self.tips.is_some() || self.torques.is_some()
     }
 
+    /// Whether `motion` keeps the limits of torques.
+    pub(crate) fn keep_torque(&self, motion: &Trajectory) -> bool {
+        let most = 1.0 + ROUNDING;
+        self.torques.as_ref().is_none_or(|torques| torques.slowdown(motion, most) <= most)
+    }
+
     /// Whether `motion` keeps the limits of tips and of torques.
     pub(crate) fn keep_whole(&self, motion: &Trajectory) -> bool {
         self.whole_slowdown(motion, 1.0 + ROUNDING) <= 1.0 + ROUNDING
@@ -409,20 +426,30 @@ impl ConstantLimits {
         of_tips.max(of_torques)
     }
 
-    /// Slows `motion` down as a whole where it exceeds the limits of tips or of torques.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] if a joint cannot hold the arm on its way.
+    /// Slows `motion` down as a whole where it exceeds the limits of tips or of torques. One on which a joint cannot hold the arm stays as it is.
     pub(super) fn slowed_as_a_whole(&self, motion: Trajectory) -> Result<Trajectory> {
         if !self.limit_whole() {
             return Ok(motion);
         }
         let factor = self.whole_slowdown(&motion, 1.0);
-        if factor <= 1.0 {
+        if factor <= 1.0 || factor.is_infinite() {
             return Ok(motion);
         }
-        self.require_holdable(factor)?;
         motion.slowed(factor * (1.0 + TIGHT))
+    }
+
+    /// Checks whether joints can hold the arm along lines; `None` without torque limits.
+    pub(crate) fn hold_check(&self) -> Option<HoldCheck<'_>> {
+        self.torques.as_ref().map(HoldCheck::new)
+    }
+
+    /// Returns why a joint cannot hold the arm at `q` (n,), if one cannot.
+    pub(crate) fn too_heavy(&self, q: &[f64]) -> Option<String> {
+        let torques = self.torques.as_ref()?;
+        let TooHeavy { joint, torque, limit } = torques.too_heavy(&mut torques.point(), q)?;
+        let (name, unit) = (self.joint_name(joint), self.torque_unit(joint));
+        let [torque, limit] = [torque.abs(), limit].map(number);
+        Some(format!("joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}"))
     }
 
     /// Checks that a slowdown is finite.

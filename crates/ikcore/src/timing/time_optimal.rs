@@ -80,11 +80,13 @@ pub(crate) fn time_all(paths: &[JointPath], limits: &ConstantLimits) -> Result<T
     motions.try_fold(first, |all, next| all.then(&next?, 0.0))
 }
 
-/// Returns the duration (s) of a fast motion under jerk limits along `paths`, each from rest to rest: one that [`time_all`] improves little.
+/// Returns the duration (s) of a fast motion under jerk limits, without those of torques, along `paths`, each from rest to rest: one that
+/// [`time_all`] improves little.
 ///
 /// # Errors
 /// As [`time_all`].
 pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Result<f64> {
+    let limits = &limits.without_torque();
     let of_path = |path: &JointPath| {
         let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
         let profile = SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends)?;
@@ -94,13 +96,13 @@ pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Re
 }
 
 /// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
-/// estimate to compare many paths. Position limits are left to the caller.
+/// estimate to compare many paths, without torque limits. Position limits are left to the caller.
 ///
 /// # Errors
 /// None in practice: a motion from rest to rest always exists.
 pub(crate) fn coarse_duration(path: &JointPath, limits: &ConstantLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-    SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
+    SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends).map(|profile| profile.duration())
 }
 
 /// Returns the range of squared path speeds for a joint speed at an end. If dq/ds vanishes, the joints are at rest at
