@@ -1,7 +1,7 @@
 """Dynamics by Pinocchio, in the conventions of this library: mimic joints are reflected, and joints beside the chain stand still."""
 
+import xml.etree.ElementTree as ET
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +21,13 @@ class DynamicsOracle:
         self.model.gravity.linear = robot.gravity
         self.robot = robot
         self.followed = self._followed()
+        self.damping, self.dry = (self._friction(xml, name) for name in ("damping", "friction"))
 
     def torques(self, q: Array, qd: Array, qdd: Array) -> Array:
-        """Torques without friction."""
-        full = self._configuration(q)
-        torques = self.pin.rnea(self.model, self.data, full, self.followed @ qd, self.followed @ qdd)
-        return np.asarray(self.followed.T @ torques)
+        full, rates = self._configuration(q), self.followed @ qd
+        torques = self.pin.rnea(self.model, self.data, full, rates, self.followed @ qdd)
+        # Pinocchio reads friction, but leaves it out.
+        return np.asarray(self.followed.T @ (torques + self.damping * rates + self.dry * np.sign(rates)))
 
     def mass_matrix(self, q: Array) -> Array:
         full = self.pin.crba(self.model, self.data, self._configuration(q))
@@ -43,6 +44,16 @@ class DynamicsOracle:
     def _configuration(self, q: Array) -> Array:
         values: Mapping[str, float] = dict(zip(self.robot.joint_names, q, strict=True)) | self.robot.held_joints
         return self.kinematics._configuration(values)
+
+    def _friction(self, xml: str, name: str) -> Array:
+        """Friction of each joint of Pinocchio (nv,)."""
+        values = np.zeros(self.model.nv)
+        for joint in ET.fromstring(xml).iter("joint"):
+            element = joint.find("dynamics")
+            if element is not None and self.model.existJointName(joint.get("name", "")):
+                index = self.model.joints[self.model.getJointId(joint.attrib["name"])].idx_v
+                values[index] = float(element.get(name, 0.0))
+        return values
 
     def _followed(self) -> Array:
         """How fast each joint of Pinocchio moves per unit rate of each joint of the robot (nv, n)."""
@@ -73,8 +84,3 @@ def states(robot: bik.Robot, count: int, seed: int) -> list[tuple[Array, Array, 
 
 def assert_near(found: Array, expected: Array, scale: float, tolerance: float = 1e-10) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance * max(scale, 1e-12))
-
-
-def friction(file: Path, robot: bik.Robot) -> tuple[Array, Array]:
-    """Damping and dry friction of each joint of the robot, of a file without mimic joints."""
-    raise NotImplementedError

@@ -80,11 +80,6 @@ impl Dynamics {
         self.bodies[frame - 1].parent
     }
 
-    /// Motion of frame `frame` > 0 on its parent.
-    pub(crate) fn motion(&self, frame: usize) -> &Transmission {
-        &self.bodies[frame - 1].motion
-    }
-
     /// Mass of all that frame `frame` carries (kg).
     pub fn carried_mass(&self, frame: usize) -> f64 {
         self.carried[frame]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_not_negative};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::wording::{number, words};
@@ -157,6 +157,13 @@ impl Joint {
         ];
         if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
             return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
+        }
+        for (what, value) in [("damping", self.damping), ("friction", self.friction), ("armature", self.armature)] {
+            require_not_negative(&format!("{what} of joint '{}'", self.name), value)?;
+        }
+        if !(self.rated_torque >= 0.0) {
+            let what = format!("torque limit of joint '{}'", self.name);
+            return Err(Error::out_of_range(what, "zero or more", self.rated_torque));
         }
         let joint = self.name.clone();
         if lower > upper {

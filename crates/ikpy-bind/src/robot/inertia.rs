@@ -91,7 +91,7 @@ impl PyInertia {
 
 /// Reads an inertia; nothing is checked but shapes.
 pub fn inertia(mass: f64, center: Option<&Bound<'_, PyAny>>, matrix: Option<&Bound<'_, PyAny>>) -> PyResult<Inertia> {
-    let center = center.map_or(Ok([0.0; 3]), |center| point("center", center))?;
+    let center = center.map_or(Ok([0.0; 3]), |center| point("centre", center))?;
     // Row by row: a matrix of the core holds columns.
     let matrix = matrix.map(|matrix| matrix3("matrix", matrix)).transpose()?;
     let matrix = matrix.map_or([[0.0; 3]; 3], |matrix| matrix.transpose().into());
