@@ -38,7 +38,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("manipulability", &["kinematics", "robot"]),
     ("calibration", &["robot", "obstacle"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
-    ("constraint", &["kinematics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
+    ("constraint", &["kinematics", "dynamics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
