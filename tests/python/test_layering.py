@@ -1,4 +1,4 @@
-"""Imports between modules, the modules that `import beetle_ik` loads, and clocks and unseeded draws, which no test has."""
+"""Imports between modules, the modules that `import beetle_ik` loads; no test has a clock or draws without a seed."""
 
 import ast
 import subprocess
@@ -11,7 +11,7 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "python" / "beetle_ik"
 FILES = sorted(PACKAGE.rglob("*.py"))
 TESTS = sorted(Path(__file__).parent.glob("*.py"))
-CAMPAIGN = sorted(Path(__file__).parents[1].joinpath("campaign").rglob("*.py"))
+ATTACKS = sorted(Path(__file__).parents[1].joinpath("campaign", "attacks").rglob("*.py"))
 CLOCKS = {"datetime", "time", "timeit"}
 UNSEEDED = {"random", "secrets", "uuid"}
 
@@ -75,7 +75,7 @@ def test_no_test_reads_a_clock_or_sleeps(file: Path) -> None:
     assert not called & {"wait_for_timeout"}
 
 
-@pytest.mark.parametrize("file", [*TESTS, *CAMPAIGN], ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", [*TESTS, *ATTACKS], ids=lambda file: file.stem)
 def test_drawn_cases_come_from_a_seed(file: Path) -> None:
     nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
     assert not libraries(nodes) & UNSEEDED
