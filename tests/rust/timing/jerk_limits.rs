@@ -107,7 +107,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(drawn(200))]
+    #![proptest_config(drawn(80))]
 
     #[test]
     fn limits_and_path_are_kept_and_looser_limits_cost_no_time(

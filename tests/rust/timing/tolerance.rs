@@ -115,7 +115,7 @@ fn a_tube_wider_than_a_return_trip_is_used() {
 }
 
 proptest! {
-    #![proptest_config(drawn(40))]
+    #![proptest_config(drawn(20))]
 
     #[test]
     fn wider_tolerances_never_take_longer_and_all_are_kept(
