@@ -24,7 +24,7 @@ CASES = {
     "dead_ends": 6,
     "clear_plans": 2,
     "held_arms": 6,
-    "two_arm_plans": 4,
+    "two_arm_plans": 2,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
