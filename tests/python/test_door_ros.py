@@ -1,4 +1,4 @@
-"""The node `beetle-ik ros` in a process of its own, and cyclonedds here. Skipped where cyclonedds or its loopback is missing."""
+"""The node `beetle-ik ros` in a process of its own against cyclonedds here; skipped where that or loopback is missing."""
 
 import os
 import signal
@@ -123,13 +123,13 @@ def state(q: np.ndarray) -> msg.JointState:
 
 
 @pytest.fixture
-def domain() -> Iterator[int]:
+def domain() -> int:
     number = 1 + os.getpid() % 100
     try:
         Graph(number, lambda *_: None)
     except DDSException as missing:
         pytest.skip(f"no DDS on loopback here: {missing}")
-    yield number
+    return number
 
 
 @pytest.fixture
@@ -233,25 +233,25 @@ def test_the_servo_follows_and_stops_when_the_stream_ends(node: Node, domain: in
     assert node.ends() == 0
 
 
+def exchange(peer: Peer) -> None:
+    """Sends a goal until a trajectory comes."""
+    peer.commands.clear()
+    peer.send("description", msg.String(URDF))
+    peer.until(
+        lambda: peer.commands, lambda: (peer.send("states", state(START)), peer.send("goal", poses(START + 0.1)))
+    )
+
+
 def test_either_side_may_restart(domain: int) -> None:
     peer = Peer(domain)
-    peer.send("description", msg.String(URDF))
     for _ in range(2):
         node = Node(domain, "--robot-description")
-        node.says("info: ready")
-        peer.commands.clear()
-        peer.until(
-            lambda: peer.commands, lambda: (peer.send("states", state(START)), peer.send("goal", poses(START + 0.1)))
-        )
+        exchange(peer)
         assert node.ends() == 0
+    del peer
     node = Node(domain, "--robot-description")
     for _ in range(2):
-        peer = Peer(domain)
-        peer.send("description", msg.String(URDF))
-        peer.until(
-            lambda: peer.commands, lambda: (peer.send("states", state(START)), peer.send("goal", poses(START + 0.1)))
-        )
-        del peer
+        exchange(Peer(domain))
     assert node.ends() == 0
 
 

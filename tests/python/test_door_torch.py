@@ -1,6 +1,5 @@
 """`interop.torch` by gradcheck and against the plain calls. Skipped if PyTorch is not installed."""
 
-
 import sys
 from typing import Any
 
