@@ -1,4 +1,4 @@
-"""The node `beetle-ik ros` in a process of its own against cyclonedds here; skipped where that or loopback is missing."""
+"""The node `beetle-ik ros` in a process of its own, and cyclonedds here; skipped where that or loopback is missing."""
 
 import os
 import signal
@@ -101,7 +101,8 @@ class Node:
         raise AssertionError(f"no line {begin!r} in {self.said}")
 
     def ends(self) -> int:
-        self.process.send_signal(signal.SIGINT)
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=60)
         return self.process.returncode
 
@@ -231,6 +232,22 @@ def test_the_servo_follows_and_stops_when_the_stream_ends(node: Node, domain: in
     peer.until(lambda: len(peer.commands) > 30, lambda: peer.send("pose", poses(START + 0.02)))
     node.says("info: rests")
     assert node.ends() == 0
+
+
+def test_ctrl_c_leaves_a_stop_within_the_limits(node: Node, domain: int) -> None:
+    peer = Peer(domain)
+    peer.send("description", msg.String(URDF))
+    peer.send("states", state(START))
+    node.says("info: ready")
+    twist = msg.TwistStamped(msg.Header(), msg.Twist(msg.Vector3(0.0, 0.0, 0.2)))
+    again = lambda: (peer.send("states", state(START)), peer.send("twist", twist))  # noqa: E731
+    peer.until(lambda: len(peer.commands) > 30, again)
+    node.process.send_signal(signal.SIGINT)
+    peer.until(lambda: len(peer.commands[-1].points) > 2, again)
+    assert node.ends() == 0
+    q = np.array([point.positions for point in peer.commands[-1].points])
+    assert np.abs(np.diff(q, 2, axis=0)).max() <= 5.0 * 0.01**2 + 1e-9
+    np.testing.assert_array_equal(q[-1], q[-2])
 
 
 def exchange(peer: Peer) -> None:

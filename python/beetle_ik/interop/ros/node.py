@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from cyclonedds.util import duration
 
-from ..._core import InvalidInputError, Limits, Plan, Robot
+from ..._core import InvalidInputError, Limits, Plan, Robot, Step
 from . import messages
 from .dds import Graph, quality
 from .joint_trajectory import to_ros
@@ -155,14 +156,34 @@ class Node:
         step = None if self.servo is None else self.servo.tick(time.time_ns())
         if step is None:
             return
-        point = messages.JointTrajectoryPoint(positions=step.q.tolist(), time_from_start=_duration(self.dt))
-        self.commands.write(messages.JointTrajectory(joint_names=list(self.robot.joint_names), points=[point]))
+        self.command([step])
         if self.servo is not None and self.servo.rests:
             self.servo.tracker = None  # the next target starts where the arm is then
             self.log("info", "rests")
 
+    def command(self, steps: list[Step]) -> None:
+        """Sends the commands of ticks to come."""
+        points = [
+            messages.JointTrajectoryPoint(positions=step.q.tolist(), time_from_start=_duration((k + 1) * self.dt))
+            for k, step in enumerate(steps)
+        ]
+        self.commands.write(messages.JointTrajectory(joint_names=list(self.robot.joint_names), points=points))
+
+    def end(self) -> None:
+        """Sends the whole stop of an arm that follows a target, in one message."""
+        if self.servo is not None and self.servo.tracker is not None:
+            self.command(self.servo.stopping())
+            self.commands.wait_for_acks(duration(milliseconds=50))
+
     def run(self) -> None:
         """Serves until an exception, as Ctrl-C raises one."""
+        try:
+            self.serve()
+        finally:
+            self.end()
+
+    def serve(self) -> None:
+        """Waits for messages and sends commands, for ever."""
         due = time.monotonic()
         while True:
             self.graph.wait(min(max(due - time.monotonic(), 0.0), _WAKE))

@@ -66,6 +66,15 @@ class Servo:
         self.target = self.twist = self.led = None
         return None if self.tracker is None else self.tracker.stop()
 
+    def stopping(self) -> list[Step]:
+        """Returns the commands of the fastest stop within the limits, up to rest; the servo has then ended."""
+        tracker, self.tracker = self.tracker, None
+        steps: list[Step] = []
+        if tracker is not None:
+            ticks = int(tracker.stop() / self.dt) + 3  # and the last ones at rest
+            steps = [tracker.step(None) for _ in range(ticks)]
+        return steps
+
     def tick(self, now: int) -> Step | None:
         """Returns the command of this tick; None before the start."""
         if self.tracker is None:
