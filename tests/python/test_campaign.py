@@ -62,6 +62,7 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
 SPOILED = {
+    "torques": ("torques = torques + 1e-3", "torques differ"),
     "joint_weights": ("solution = Changed(solution, q=solution.q + 0.02)", "solved, but not within the tolerance"),
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),

@@ -11,6 +11,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    dynamics,
     held_arms,
     joint_weights,
     keeping,
@@ -36,6 +37,7 @@ from . import (
 
 _MODULES = (
     kinematics,
+    dynamics,
     solving,
     round_poses,
     searching,
