@@ -10,6 +10,13 @@ Poses need no conversion: every function that takes a pose also takes Pinocchio'
 | Pinocchio | `from_pinocchio`, `to_pinocchio` |
 | Robotics Toolbox for Python | `from_roboticstoolbox`, `to_roboticstoolbox` |
 | MuJoCo (MJCF) | `from_mujoco` |
+
+Modules of their own, imported by name, as in `from beetle_ik.interop import jax`:
+
+| for | module |
+|---|---|
+| JAX: kinematics with derivatives | `jax` |
+| PyTorch: the same | `torch` |
 """
 
 from .mujoco import from_mujoco

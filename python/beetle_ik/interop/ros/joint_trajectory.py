@@ -5,11 +5,11 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from .._core import InvalidInputError, Trajectory
-from ..calls.arguments import require_text
-from ..files.derivatives import has_continuous_acceleration
-from ..files.whole import whole_file
-from .samples import samples
+from ..._core import InvalidInputError, Trajectory
+from ...calls.arguments import require_text
+from ...files.derivatives import has_continuous_acceleration
+from ...files.whole import whole_file
+from ..samples import samples
 
 _NANO = 1_000_000_000
 _CUBIC = 3
