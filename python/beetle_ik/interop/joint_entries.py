@@ -1,6 +1,6 @@
-"""Arrays of joint positions in degrees, in the order of others, with entries that are no joints of the arm."""
+"""Arrays of joint positions in the order of others, with entries of joints that do not move the arm."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -13,33 +13,37 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 class JointEntries:
-    """Where the joints of an arm are in an array in degrees; joints that slide are in m.
+    """Where the joints of an arm are in an array; joints that slide are in m.
 
     Args:
         robot: the arm.
-        names: names of the first entries, in order; None: the joints of the arm, then those beside it.
+        joints: names of all joints of the file.
+        names: names of the first entries, in order.
+        argument: name of the argument that has the names, for messages.
+        degrees: whether joints that turn are in degrees.
 
     Raises:
         UnknownNameError: a name that is no joint of the file.
         InvalidInputError: a joint of the arm that is missing, or a name that is there twice.
     """
 
-    def __init__(self, robot: Robot, names: Sequence[str] | None) -> None:
+    def __init__(
+        self, robot: Robot, joints: Collection[str], names: Sequence[str], *, argument: str, degrees: bool
+    ) -> None:
         """Finds the joints of the arm among the names."""
-        joints = [*robot.joint_names, *robot.held_joints]
-        self.names = joints if names is None else list(names)
+        self.names = list(names)
         for name in self.names:
             if name not in joints:
-                raise UnknownNameError(f"joint_names: no joint '{name}' in the robot; joints: {listed(joints)}")
+                raise UnknownNameError(f"{argument}: no joint '{name}' in the robot; joints: {listed(joints)}")
             if self.names.count(name) > 1:
-                raise InvalidInputError(f"joint_names: '{name}' is there twice")
+                raise InvalidInputError(f"{argument}: '{name}' is there twice")
         for joint in robot.joint_names:
             if joint not in self.names:
                 raise InvalidInputError(
-                    f"joint_names: joint '{joint}' is missing, and moves the frame '{robot.tips[0]}'"
+                    f"{argument}: joint '{joint}' is missing, and moves the frame '{robot.tips[0]}'"
                 )
-        self._turns = np.array([kind != "prismatic" for kind in robot.joint_kinds])
-        self._at = [self.names.index(joint) for joint in robot.joint_names]
+        self._turns = degrees & np.array([kind != "prismatic" for kind in robot.joint_kinds])
+        self.at = [self.names.index(joint) for joint in robot.joint_names]
 
     def read(self, name: str, values: ArrayLike) -> Array:
         """Returns an array of entries (k,), a copy, checked."""
@@ -51,31 +55,31 @@ class JointEntries:
             raise InvalidInputError(
                 f"{name}: expected at least {len(self.names)} entries, one per joint name, got shape {entries.shape}"
             )
-        for at in self._at:
+        for at in self.at:
             if not np.isfinite(entries[at]):
                 raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
         return entries
 
     def q(self, entries: Array) -> Array:
         """Returns the joint positions of the arm (n,) (rad, m)."""
-        joints = entries[self._at]
+        joints = entries[self.at]
         return np.where(self._turns, np.deg2rad(joints), joints)
 
     def placed(self, q: Array, entries: Array) -> Array:
         """Returns the entries with the joint positions q (n,) (rad, m) in their places."""
         placed = entries.copy()
-        placed[self._at] = np.where(self._turns, np.rad2deg(q), q)
+        placed[self.at] = np.where(self._turns, np.rad2deg(q), q)
         return placed
 
     def limit(self, name: str, values: ArrayLike) -> Array:
         """Returns limits (n,) (rad, m) of a number or one per joint of the arm, in the order of the names."""
         limits = np.array(values, dtype=np.float64)
         if limits.ndim == 0:
-            return self._radians(np.full(len(self._at), limits))
-        if limits.shape != (len(self._at),):
-            wanted = f"a number or {len(self._at)}, one per joint that moves the frame"
+            return self._radians(np.full(len(self.at), limits))
+        if limits.shape != (len(self.at),):
+            wanted = f"a number or {len(self.at)}, one per joint that moves the frame"
             raise InvalidInputError(f"{name}: expected {wanted}, got shape {limits.shape}")
-        return self._radians(limits[np.argsort(np.argsort(self._at))])
+        return self._radians(limits[np.argsort(np.argsort(self.at))])
 
     def most(self, degrees: float) -> Array:
         """Returns a bound (n,) (rad) of the joints that turn; joints that slide have none."""

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import tasks
 from .._core import InvalidInputError, Limits, Robot, Solution, Status, Step, Tracker, pose, solve
 from .joint_entries import JointEntries
+from .urdf_joints import moving_joints, urdf_text
 
 Array: TypeAlias = NDArray[np.float64]
 _FIRST = 10.0  # ratio of the weights from which one part of the pose comes first
@@ -53,7 +54,10 @@ class RobotKinematics:
         """Loads the robot."""
         self.robot = Robot.from_urdf(urdf_path, tip=target_frame_name, collision=None)
         self.target_frame_name = target_frame_name
-        self._entries = JointEntries(self.robot, joint_names)
+        joints = moving_joints(urdf_text(urdf_path))
+        beside = [joint for joint in joints if joint not in self.robot.joint_names]
+        names = [*self.robot.joint_names, *beside] if joint_names is None else joint_names
+        self._entries = JointEntries(self.robot, joints, names, argument="joint_names", degrees=True)
         self.joint_names = self._entries.names
         self.result: Solution | Step | None = None
         """What the last `inverse_kinematics` has reached, with `success`, `status`, `message`, `position_error` (m) and
