@@ -222,10 +222,11 @@ class Planner:
         del rrt_range, planning_time, simplify, constraint_tolerance, verbose
         self._refuse_constraint(constraint_function, constraint_jacobian)
         qpos = self._start(current_qpos, fix_joint_limits)
-        given = np.asarray(goal_qposes, dtype=float)
-        if given.size == 0:
+        given: list[Any] = list(goal_qposes)
+        if not given:
             raise InvalidInputError("goal_qposes: at least one is needed, got none")
-        goals = np.array([self.robot.full("goal_qposes", goal) for goal in np.atleast_2d(given)])
+        several = given if np.ndim(given[0]) > 0 else [given]
+        goals = np.array([self.robot.full("goal_qposes", goal) for goal in several])
         fixed = [] if fixed_joint_indices is None else [int(i) for i in fixed_joint_indices]
         goals[:, fixed] = qpos[fixed]
         end = {"end_q": self._arm(goals)}
