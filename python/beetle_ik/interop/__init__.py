@@ -14,11 +14,12 @@ Poses need no conversion: every function that takes a pose also takes Pinocchio'
 | Robotics Toolbox for Python | `from_roboticstoolbox`, `to_roboticstoolbox` |
 | MuJoCo (MJCF) | `from_mujoco` |
 
-Doors have the calls of another library: `interop.lerobot` and `interop.maniskill`.
+Doors have the calls of another library: `interop.lerobot` and `interop.maniskill`; `interop.teleop` takes the twists of a joystick.
 """
 
 from . import lerobot as lerobot
 from . import maniskill as maniskill
+from . import teleop as teleop
 from .episodes import to_lerobot
 from .moveit import to_moveit
 from .mujoco import from_mujoco
