@@ -14,11 +14,13 @@ Poses need no conversion: every function that takes a pose also takes Pinocchio'
 | Robotics Toolbox for Python | `from_roboticstoolbox`, `to_roboticstoolbox` |
 | MuJoCo (MJCF) | `from_mujoco` |
 
-Doors have the calls of another library: `interop.lerobot` and `interop.maniskill`; `interop.teleop` takes the twists of a joystick.
+Doors have the calls of another library, `interop.lerobot` and `interop.maniskill`, or take what sensors of humans give:
+`interop.teleop` velocities of a joystick, `interop.retarget` points of a hand or body.
 """
 
 from . import lerobot as lerobot
 from . import maniskill as maniskill
+from . import retarget as retarget
 from . import teleop as teleop
 from .episodes import to_lerobot
 from .moveit import to_moveit
