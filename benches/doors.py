@@ -140,7 +140,7 @@ def plan(data: Path, count: int) -> None:
         for (name, library, arguments), _ in zip(libraries, judges, strict=True):
             planner = library.Planner(**arguments)
             outcomes = [attempt(library, planner, judges, libraries, case) for case in cases[:count]]
-            print(f"{scene}, {name}: {summary(outcomes)}")
+            print(f"{scene}, {name}: {summary(outcomes)}", flush=True)
 
 
 def attempt(

@@ -55,9 +55,10 @@ class JointEntries:
             raise InvalidInputError(
                 f"{name}: expected at least {len(self.names)} entries, one per joint name, got shape {entries.shape}"
             )
-        for at in self.at:
-            if not np.isfinite(entries[at]):
-                raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
+        finite = np.isfinite(entries[self.at])
+        if not finite.all():
+            at = self.at[int(np.argmin(finite))]
+            raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
         return entries
 
     def q(self, entries: Array) -> Array:

@@ -7,7 +7,6 @@ LeRobot and placo need not be installed.
 
 import os
 from collections.abc import Sequence
-from numbers import Real
 from typing import TypeAlias
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import tasks
 from .._core import InvalidInputError, Limits, Robot, Solution, Status, Step, Tracker, pose, solve
 from .joint_entries import JointEntries
-from .urdf_joints import moving_joints, urdf_text
+from .urdf_joints import moving_joints
 
 Array: TypeAlias = NDArray[np.float64]
 _FIRST = 10.0  # ratio of the weights from which one part of the pose comes first
@@ -54,7 +53,7 @@ class RobotKinematics:
         """Loads the robot."""
         self.robot = Robot.from_urdf(urdf_path, tip=target_frame_name, collision=None)
         self.target_frame_name = target_frame_name
-        joints = moving_joints(urdf_text(urdf_path))
+        joints = moving_joints(urdf_path)
         beside = [joint for joint in joints if joint not in self.robot.joint_names]
         names = [*self.robot.joint_names, *beside] if joint_names is None else joint_names
         self._entries = JointEntries(self.robot, joints, names, argument="joint_names", degrees=True)
@@ -107,9 +106,7 @@ class RobotKinematics:
         weights = _checked(position_weight, orientation_weight)
         start = self.robot.clip(self._entries.q(entries))
         near = self._nearby(start, target, weights)
-        given_up = near.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)
-        as_in_a_stream = given_up and np.abs(near.q - start).max() < _STEP_OF_A_STREAM
-        self.result = near if near.success or as_in_a_stream else self._better(near, target, weights)
+        self.result = near if _suffices(near, start) else self._better(near, target, weights)
         return self._entries.placed(self.result.q, entries)
 
     def tracker(
@@ -168,7 +165,7 @@ class RobotKinematics:
         self._local.reset(q)
         for _ in range(_STEPS):
             step = self._local.step(target)
-            if np.abs(step.qd).max() < _SETTLED:
+            if _suffices(step, q) or _largest(step.qd) < _SETTLED:
                 break
         return step
 
@@ -234,9 +231,19 @@ class PoseTracker:
         return self.tracker.time
 
 
+def _suffices(step: Step, start: Array) -> bool:
+    """Whether a step met the pose, or its leading part by a motion as short as those of a stream."""
+    given_up = step.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)
+    return step.success or (given_up and _largest(step.q - start) < _STEP_OF_A_STREAM)
+
+
+def _largest(values: Array) -> float:
+    return float(np.abs(values).max())
+
+
 def _checked(position_weight: float, orientation_weight: float) -> tuple[float, float]:
     for name, weight in (("position_weight", position_weight), ("orientation_weight", orientation_weight)):
-        if not (isinstance(weight, Real) and 0.0 <= weight < np.inf):
+        if not (isinstance(weight, float | int | np.number) and 0.0 <= weight < np.inf):
             raise InvalidInputError(f"{name} must be a number, zero or more, got {weight!r:.60}")
     if position_weight == orientation_weight == 0:
         raise InvalidInputError("position_weight and orientation_weight are both 0: nothing is left to reach")

@@ -11,19 +11,14 @@ _MOVING = ("revolute", "continuous", "prismatic")
 Bounds: TypeAlias = tuple[float, float]
 
 
-def urdf_text(path_or_xml: str | os.PathLike[str]) -> str:
-    """Returns the text of a URDF file, or the text itself."""
-    if isinstance(path_or_xml, str) and "<" in path_or_xml:
-        return path_or_xml
-    return Path(path_or_xml).read_text(encoding="utf-8")
-
-
-def moving_joints(urdf: str) -> dict[str, Bounds]:
-    """Returns lower and upper limits (rad, m) of the joints that move, mimic joints included.
+def moving_joints(path_or_xml: str | os.PathLike[str]) -> dict[str, Bounds]:
+    """Returns lower and upper limits (rad, m) of the joints of a URDF that move, mimic joints included.
 
     They are in the order of Pinocchio: from the root outward, branch after branch, branches sorted by joint names.
     """
-    joints = [joint for joint in ElementTree.fromstring(urdf).iter("joint") if joint.find("child") is not None]
+    is_text = isinstance(path_or_xml, str) and "<" in path_or_xml
+    root = ElementTree.fromstring(str(path_or_xml) if is_text else Path(path_or_xml).read_bytes())
+    joints = [joint for joint in root.iter("joint") if joint.find("child") is not None]
     behind: dict[str, list[ElementTree.Element]] = {}
     for joint in sorted(joints, key=lambda joint: joint.get("name", "")):
         behind.setdefault(_link(joint, "parent"), []).append(joint)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..._core import InvalidInputError, Obstacle, Robot, UnknownNameError, UrdfError
 from ...calls.text import listed
 from ..joint_entries import JointEntries
-from ..urdf_joints import moving_joints, urdf_text
+from ..urdf_joints import moving_joints
 from .poses import Array, Pose, matrix_of
 
 
@@ -50,7 +50,7 @@ class Articulation:
                 stacklevel=3,
             )
         self._arm = arm
-        bounds = moving_joints(urdf_text(urdf))
+        bounds = moving_joints(urdf)
         self.joints = JointEntries(
             arm, bounds, list(joint_names) or list(bounds), argument="user_joint_names", degrees=False
         )
