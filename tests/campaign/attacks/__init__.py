@@ -11,6 +11,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    doors,
     held_arms,
     joint_weights,
     keeping,
@@ -63,6 +64,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
