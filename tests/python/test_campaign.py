@@ -67,6 +67,7 @@ SPOILED = {
         "position_error is not the error",
     ),
     "led_by_twists": ("q[-1] = q[-1] + 0.01", "the velocity is beyond its limit"),
+    "torques": ("torques = torques + 1e-3", "torques differ"),
     "joint_weights": ("solution = Changed(solution, q=solution.q + 0.02)", "solved, but not within the tolerance"),
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),

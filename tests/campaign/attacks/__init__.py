@@ -12,6 +12,7 @@ from . import (
     dead_ends,
     described,
     doors,
+    dynamics,
     held_arms,
     joint_weights,
     keeping,
@@ -37,6 +38,7 @@ from . import (
 
 _MODULES = (
     kinematics,
+    dynamics,
     solving,
     round_poses,
     searching,
