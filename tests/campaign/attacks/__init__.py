@@ -11,6 +11,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    doors,
     dynamics,
     held_arms,
     joint_weights,
@@ -65,6 +66,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 
