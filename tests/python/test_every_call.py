@@ -269,6 +269,7 @@ MADE_BY_THE_LIBRARY = [
     "BatchPlan",
     "BatchSolution",
     "Body",
+    "Break",
     "Calibration",
     "ControlSession",
     "Identifiability",
