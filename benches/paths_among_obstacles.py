@@ -5,8 +5,8 @@
 `--paths` holds the path problems of CppFlow (Morgan et al. 2024) as `NAME.csv` and `NAME.json`, `--robots` the data of
 MotionBenchMaker. Each path has poses that the hand must pass within 0.1 mm and 0.1 deg. The bodies are spheres, and the
 margin is 0.1 mm. Coal judges every motion, at 2,000 instants. `length` is the sum of |change of angle| over joints and
-waypoints, as in that paper, and `step` the largest change of a joint from one waypoint to the next. Without the data
-the program says so and ends.
+waypoints, as in that paper, and `step` the largest change of a joint from one waypoint to the next. A path that cannot
+be followed in one go is followed with `breaks=True`. Without the data the program says so and ends.
 """
 
 # ruff: noqa: E402
@@ -29,8 +29,8 @@ from peers.report import plain_section, write_table
 
 import beetle_ik as bik
 
-PROBLEMS = ("panda__1cube_mini", "panda__1cube", "panda__2cubes")
-COLUMNS = ["path", "plan", "success", "time_ms", "duration_s", "length_rad", "step_deg", "clearance_mm", "coal_mm"]
+PROBLEMS = ("panda__1cube_mini", "panda__1cube", "panda__2cubes", "panda__square")
+COLUMNS = ["path", "plan", "success", "time_ms", "duration_s", "length_rad", "step_deg", "clearance_mm", "coal_mm", "breaks"]
 MARGIN = 1e-4  # m
 ACCURACY = 1e-4  # m and rad
 INSTANTS = 2000
@@ -81,7 +81,7 @@ def measure(arm: MotionBenchArm, problem: dict, poses: np.ndarray, repeats: int,
     times = []
     for _ in range(repeats):
         begin = perf_counter()
-        plan = bik.plan_along_path(arm.robot, poses, limits=limits, accuracy=ACCURACY, **around)
+        plan = bik.plan_along_path(arm.robot, poses, limits=limits, accuracy=ACCURACY, breaks=True, **around)
         times.append(perf_counter() - begin)
     at_waypoints, steps = passed(arm.robot, plan.trajectory, poses)
     judge = CoalScene(arm, {"boxes": [as_judged(box) for box in problem["boxes"]], "cylinders": []})
@@ -97,6 +97,7 @@ def measure(arm: MotionBenchArm, problem: dict, poses: np.ndarray, repeats: int,
         f"{np.degrees(steps.max()):.1f}",
         "" if ignored else f"{1e3 * plan.clearance:.2f}",
         f"{1e3 * least:.2f}",
+        len(plan.breaks),
     ]
 
 

@@ -27,6 +27,7 @@ from .report import Report
 from .surfaces import Links
 
 if TYPE_CHECKING:
+    import viser
     from numpy.typing import NDArray
 
     from .looks import Look

@@ -18,6 +18,9 @@ const LINES: [Option<f64>; 4] = [Some(0.05), Some(0.02), Some(0.005), None];
 /// Layers that a stretch gives up at its ends where no motion to its very ends keeps everything: at most so many.
 const GIVEN_UP: usize = 3;
 
+/// Length of a path (m, rad) below which nothing is left out: the tip is not nearer to its path.
+const LEFT_OUT: f64 = 1e-5;
+
 /// Joint difference (rad, m) below which a motion does not move.
 const NOTHING: f64 = 1e-9;
 
@@ -153,6 +156,12 @@ impl BrokenPath<'_> {
         Err(Error::NotFound { what: format!("a way beside the path from {at} to {until}"), problem })
     }
 
+    /// Places as the caller counts; one and the same where less is left out than the tip may be off its path.
+    fn named(&self, [at, until]: [f64; 2]) -> [f64; 2] {
+        let left_out = (until - at) * self.tip_path.length();
+        [at, if left_out < LEFT_OUT { at } else { until }].map(|place| self.tip_path.place(place))
+    }
+
     /// The plan of all pieces.
     fn joined(&self, pieces: Vec<Piece>) -> Result<Option<Plan>> {
         let (mut motion, mut breaks): (Option<Trajectory>, Vec<Break>) = (None, vec![]);
@@ -167,7 +176,7 @@ impl BrokenPath<'_> {
             };
             let moved = plan.as_ref().map_or(0.0, |plan| plan.trajectory.duration());
             if let Some((places, reason)) = place {
-                let [at, until] = places.map(|place| self.tip_path.place(place));
+                let [at, until] = self.named(places);
                 breaks.push(Break { at, until, reason, start, end: start + moved });
             }
             let Some(plan) = plan else { continue };

@@ -65,7 +65,7 @@ use crate::wording::said;
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
-///         a robot without bodies, or a start_q at which `keep` does not hold.
+///         a robot without bodies, `breaks` with "tpbso", no way beside the path at a break, or a start_q at which `keep` does not hold.
 ///     LimitError: limits that contradict each other; a start farther outside them than start_slack.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).

@@ -22,7 +22,7 @@ impl PyBreak {
         self.0.at
     }
 
-    /// Where it goes on, counted alike: at the same place, where nothing is left out.
+    /// Where it goes on, counted alike: at the same place, where nothing is left out; at the end of the path, where it does not come back.
     #[getter]
     fn until(&self) -> f64 {
         self.0.until

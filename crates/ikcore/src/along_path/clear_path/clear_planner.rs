@@ -40,7 +40,7 @@ const AROUND: f64 = 1.5;
 const SPARE: f64 = 2e-5;
 
 /// Advice where no motion is found.
-const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by a task";
+const ADVICE: &str = "try another seed, wider limits, leave a part of the poses free by a task";
 
 /// Penalty of a posture in collision per metre of its shortfall from the margin.
 const DEEP: f64 = 1e6;

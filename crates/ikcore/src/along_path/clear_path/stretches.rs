@@ -1,7 +1,8 @@
 //! The fewest stretches of a path that the arm follows without leaving it.
 //!
-//! Each stretch goes as far as any sequence of postures leads; the next one begins there, with any posture. No division has fewer
-//! stretches: whatever sequence covers the rest of the path covers what is left of it after a longer stretch too.
+//! Each stretch goes as far as any sequence of postures leads; the next one begins beyond, with any posture. No division has fewer
+//! stretches: whatever sequence covers the rest of the path covers what is left of it after a longer stretch too. Then neighbours are
+//! extended towards each other.
 
 use super::passage::Passage;
 use super::path_end::why_it_ends;
@@ -17,8 +18,10 @@ use crate::obstacle::ClearSpace;
 /// Largest number of layers at the points of a path; a path with more has layers at equal distances.
 const MOST_LAYERS: usize = 400;
 
-/// Parts into which the interval to the next layer is divided where a stretch goes on beyond its last layer.
+/// Parts into which the interval to the next layer is divided where a stretch goes on beyond its last layer, and halvings of the first
+/// part that it does not make.
 const PARTS: usize = 8;
+const HALVINGS: usize = 12;
 
 /// Postures along a part of a path.
 #[derive(Debug, Clone)]
@@ -128,16 +131,21 @@ impl<'a> Divider<'a> {
     fn divide(&mut self) -> Result<()> {
         let last = self.layers.len() - 1;
         let mut from = 0;
-        while from < last {
-            let sequence = self.longest(from)?;
+        while from <= last {
+            let mut sequence = self.longest(from)?;
+            // A layer that no sequence leaves may be the end of one from the layer before.
+            if sequence.len() == 1 && self.parts.last().is_some_and(|before| before.last() + 1 == from) {
+                from -= 1;
+                sequence = self.longest(from)?;
+            }
             if sequence.len() < 2 {
-                from += 1;
+                from += if self.parts.last().is_some_and(|before| before.last() == from) { 2 } else { 1 };
                 continue;
             }
             let end = from + sequence.len() - 1;
             let reason = (end < last).then(|| self.reason(end, &sequence[end - from], end + 1));
             self.parts.push(Part { first: from, sequence, reason });
-            from = end;
+            from = end + 1;
         }
         for next in 1..self.parts.len() {
             self.move_apart(next);
@@ -151,6 +159,11 @@ impl<'a> Divider<'a> {
         let is_open = from > 0 || self.passage.problem.options.start.is_none();
         if is_open {
             self.passage.open_turns();
+        }
+        // Of postures that lead as far, those near the end of the part before.
+        if let Some(end) = self.parts.last().and_then(|before| before.sequence.last()) {
+            let price = &self.price;
+            self.layers[from].iter_mut().for_each(|start| start.penalty = price.of_way(end, &start.q));
         }
         let reached = reached(&self.layers[from..], &self.fractions[from..], &self.price, &mut self.passage);
         self.passage.close_turns();
@@ -174,10 +187,10 @@ impl<'a> Divider<'a> {
     /// limit, near a singularity or close to a body at the ends.
     fn move_apart(&mut self, next: usize) {
         let [before, after] = [&self.parts[next - 1], &self.parts[next]];
-        if before.last() != after.first {
+        let (end, mut here, mut back) = (before.last(), after.sequence[0].clone(), vec![]);
+        if after.first > end + 1 {
             return;
         }
-        let (mut here, mut back) = (after.sequence[0].clone(), vec![]);
         for layer in (before.first + 1..after.first).rev() {
             let [from, to] = [layer + 1, layer].map(|layer| self.fractions[layer]);
             let Some(q) = self.passage.clear_on_path(to, &here) else { break };
@@ -187,14 +200,20 @@ impl<'a> Divider<'a> {
             back.push(q.clone());
             here = q;
         }
-        back.truncate(back.len() / 2);
-        let shift = back.len();
-        back.reverse();
+        let Some(common) = (back.len() + end + 1).checked_sub(self.parts[next].first) else { return };
+        if common == 0 {
+            return;
+        }
+        let begin = end - (common - 1) / 2;
         let before = &mut self.parts[next - 1];
-        before.sequence.truncate(before.sequence.len() - shift);
+        before.sequence.truncate(begin - before.first + 1);
         let after = &mut self.parts[next];
-        after.first -= shift;
-        after.sequence.splice(0..0, back);
+        if begin <= after.first {
+            back.truncate(after.first - begin);
+            back.reverse();
+            after.first = begin;
+            after.sequence.splice(0..0, back);
+        }
     }
 
     /// Number of steps between layers that no part makes.
@@ -240,21 +259,47 @@ impl<'a> Divider<'a> {
 
     /// Postures beyond the last layer of a part, as near to the path parameter `to` as the arm goes.
     fn beyond(&mut self, (from, q): (f64, &Point), to: f64) -> Vec<(f64, Point)> {
-        let (mut here, mut beyond) = ((from, q.clone()), vec![]);
-        for part in 1..=PARTS {
-            let fraction = from + (to - from) * part as f64 / PARTS as f64;
-            let Some(q) = self.passage.clear_on_path(fraction, &here.1) else { break };
-            if !self.passage.leads((here.0, &here.1), (fraction, &q)) {
-                break;
+        let coarse = (to - from) / PARTS as f64;
+        let mut beyond = vec![(from, q.clone())];
+        let (mut here, mut step, mut halvings) = (beyond[0].clone(), coarse, 0);
+        while here.0 != to && halvings <= HALVINGS {
+            let fraction = if (to - here.0).abs() <= step.abs() { to } else { here.0 + step };
+            let next = self.passage.clear_on_path(fraction, &here.1);
+            match next.filter(|q| self.passage.leads((here.0, &here.1), (fraction, q))) {
+                Some(q) => here = (fraction, q),
+                None => {
+                    step *= 0.5;
+                    halvings += 1;
+                }
             }
-            here = (fraction, q);
-            beyond.push(here.clone());
+            // Knots that are much nearer to each other than the others make a spline swing.
+            if halvings == 0 && here.0 != beyond[beyond.len() - 1].0 {
+                beyond.push(here.clone());
+            }
         }
+        if here.0 != beyond[beyond.len() - 1].0 {
+            if beyond.len() > 1 && (here.0 - beyond[beyond.len() - 1].0).abs() < 0.5 * coarse.abs() {
+                beyond.pop();
+            }
+            beyond.push(here);
+        }
+        beyond.remove(0);
         beyond
     }
 
-    /// The stretch through these postures, with the candidates of its layers.
+    /// The stretch through these postures, with the candidates of its layers: no more of them than a path has by default, but its corners.
     fn with_candidates(&self, stretch: Vec<(f64, Point)>) -> Stretch {
+        let tip_path = self.passage.problem.tip_path;
+        let spacing = 0.999 / intervals(tip_path) as f64;
+        let (corners, last): (Vec<f64>, usize) = (tip_path.corners().collect(), stretch.len() - 1);
+        let mut kept: Vec<(f64, Point)> = vec![];
+        for (i, (place, q)) in stretch.into_iter().enumerate() {
+            let is_due = kept.last().is_none_or(|(before, _)| place - before >= spacing);
+            if is_due || i == last || corners.contains(&place) {
+                kept.push((place, q));
+            }
+        }
+        let stretch = kept;
         let (places, sequence): (Vec<f64>, Vec<Point>) = stretch.into_iter().unzip();
         let candidates = |(place, q): (&f64, &Point)| {
             let layer = self.fractions.iter().position(|fraction| fraction == place);
