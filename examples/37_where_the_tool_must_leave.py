@@ -18,12 +18,10 @@ limits = bik.Limits(acceleration=5.0)
 # A line of 0.2 m, on which the tool turns by five times pi.
 turned = np.linspace(0.0, 5 * np.pi, 101)
 along = np.linspace(-0.1, 0.1, 101)
-seam = np.array(
-    [
-        bik.pose([0.5, y, 0.3], rpy=[np.pi, 0.0, angle])
-        for y, angle in zip(along, turned, strict=True)
-    ]
-)
+seam = np.array([
+    bik.pose([0.5, y, 0.3], rpy=[np.pi, 0.0, angle])
+    for y, angle in zip(along, turned, strict=True)
+])
 
 # %%
 # Without breaks the error says where and why.

@@ -154,7 +154,7 @@ SPOILED = {
         "what is kept does not hold",
     ),
     "path_breaks": (
-        "import types\nplan = types.SimpleNamespace(success=True, trajectory=plan.trajectory, breaks=plan.breaks)\npoints = points + 0.5",
+        "points = points + 0.5",
         "the tip leaves the path between breaks",
     ),
     "tip_limits": (

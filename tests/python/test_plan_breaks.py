@@ -1,4 +1,4 @@
-"""Paths that the tool must leave: the fewest breaks by a search of its own, what is followed, and why the rest is not."""
+"""Paths that the tool must leave: the fewest breaks by a search of its own, what is followed, and the reasons."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import json
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from oracle import SHARED, needs_shared
 
 import beetle_ik as bik
-from oracle import SHARED, needs_shared
 
 Array = NDArray[np.float64]
 
@@ -48,9 +48,7 @@ def drawn(random: np.random.Generator) -> Array:
     else:
         places = middle + radius * np.column_stack([np.cos(swept * share), np.sin(swept * share), 0 * share])
     rpy = [np.pi, number(-0.5, 0.5), 0.0]
-    return np.array(
-        [bik.pose(at, rpy=[*rpy[:2], turn * part]) for at, part in zip(places, share, strict=True)]
-    )
+    return np.array([bik.pose(at, rpy=[*rpy[:2], turn * part]) for at, part in zip(places, share, strict=True)])
 
 
 def configurations(robot: bik.Robot, pose: Array, lower: Array, upper: Array) -> Array:
@@ -106,7 +104,8 @@ def require_sound(plan: bik.Plan, poses: Array, lower: Array, upper: Array, acce
     """Checks limits, rest at the breaks, order, and that all but the parts left out is followed."""
     motion = plan.trajectory
     q, qd, qdd = motion.at(np.linspace(0.0, motion.duration, 5001))
-    assert (q >= lower - 1e-9).all() and (q <= upper + 1e-9).all()
+    assert (q >= lower - 1e-9).all()
+    assert (q <= upper + 1e-9).all()
     assert (np.abs(qd) <= np.asarray(plan.limits.velocity) * (1 + 1e-9)).all()
     assert (np.abs(qdd) <= acceleration * (1 + 1e-9)).all()
     edges = [time for each in plan.breaks for time in (each.start, each.end)]
@@ -124,16 +123,20 @@ def require_sound(plan: bik.Plan, poses: Array, lower: Array, upper: Array, acce
     assert met[~left_out].all()
 
 
-@pytest.mark.parametrize(("turns", "span", "least"), [(0.4, 2 * np.pi, 0), (1.5, 2 * np.pi, 1), (2.5, 2 * np.pi, 2), (2.5, 4 * np.pi, 1)])
+@pytest.mark.parametrize(
+    ("turns", "span", "least"), [(0.4, 2 * np.pi, 0), (1.5, 2 * np.pi, 1), (2.5, 2 * np.pi, 2), (2.5, 4 * np.pi, 1)]
+)
 def test_whole_turns_run_out_as_rarely_as_possible(turns: float, span: float, least: int) -> None:
     poses = turned(turns)
     lower, upper = bounds(span, 5)
     plan = bik.plan_along_path(UR5E, poses, limits=bik.Limits(lower=lower, upper=upper, **FAST), breaks=True)
-    assert plan.success and len(plan.breaks) == least
+    assert plan.success
+    assert len(plan.breaks) == least
     require_sound(plan, poses, lower, upper)
     assert fewest_breaks(UR5E, poses, lower, upper) == least
     for each in plan.breaks:
-        assert each.until - each.at < 1e-3 and "joint 'wrist_3_joint' would have to" in each.reason
+        assert each.until - each.at < 1e-3
+        assert "joint 'wrist_3_joint' would have to" in each.reason
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -172,14 +175,18 @@ def test_points_out_of_reach_are_left_out() -> None:
     places[15:26, 0] += np.sin(np.linspace(0.0, np.pi, 11)) * 0.9
     poses = np.array([bik.pose(at, rpy=[np.pi, 0.0, 0.0]) for at in places])
     limits = bik.Limits(**FAST)
-    with pytest.raises(bik.InvalidInputError, match=r"of the path cannot be reached.*; breaks=True, which lets the tool"):
+    with pytest.raises(
+        bik.InvalidInputError, match=r"of the path cannot be reached.*; breaks=True, which lets the tool"
+    ):
         bik.plan_along_path(UR5E, poses, limits=limits)
     plan = bik.plan_along_path(UR5E, poses, limits=limits, breaks=True)
-    assert plan.success and len(plan.breaks) == 1
+    assert plan.success
+    assert len(plan.breaks) == 1
     alone = [bik.solve(UR5E, pose).success for pose in poses]
     [only] = plan.breaks
     missed = np.flatnonzero(~np.array(alone))
-    assert missed[0] - 1 <= only.at <= missed[0] and missed[-1] <= only.until <= missed[-1] + 1
+    assert missed[0] - 1 <= only.at <= missed[0]
+    assert missed[-1] <= only.until <= missed[-1] + 1
     require_sound(plan, poses, np.full(6, -2 * np.pi), np.full(6, 2 * np.pi))
 
 
@@ -189,9 +196,13 @@ def test_bodies_in_the_way_are_named_and_passed() -> None:
     wall = bik.obstacles.Box([0.45, 0.0, 0.3], [0.2, 0.02, 0.1])
     limits = bik.Limits(**FAST)
     blocked = bik.plan_along_path(robot, poses, limits=limits, obstacles=[wall])
-    assert not blocked.success and "obstacle 0 (Box)" in blocked.message and "breaks=True" in blocked.message
+    assert not blocked.success
+    assert "obstacle 0 (Box)" in blocked.message
+    assert "breaks=True" in blocked.message
     plan = bik.plan_along_path(robot, poses, limits=limits, obstacles=[wall], breaks=True)
-    assert plan.success and len(plan.breaks) == 1 and plan.clearance >= 1e-3
+    assert plan.success
+    assert len(plan.breaks) == 1
+    assert plan.clearance >= 1e-3
     assert "obstacle 0 (Box)" in plan.breaks[0].reason
     q = plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, 2000))[0]
     assert min(bik.obstacles.clearance(robot, each, [wall]) for each in q) >= 1e-3 - 1e-9
@@ -204,7 +215,8 @@ def test_what_is_kept_holds_at_breaks_too() -> None:
     limits = bik.Limits(lower=lower, upper=upper, **FAST)
     cup = bik.upright(UR5E, axis=(0, 0, 1), direction=(0, 0, -1), tilt=0.2)
     plan = bik.plan_along_path(UR5E, poses, limits=limits, keep=cup, breaks=True)
-    assert plan.success and len(plan.breaks) == 1
+    assert plan.success
+    assert len(plan.breaks) == 1
     tips = UR5E.fk(plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, 3000))[0])
     assert np.arccos(np.clip(-tips[:, 2, 2], -1.0, 1.0)).max() <= 0.2 + 1e-9
 
@@ -225,7 +237,8 @@ def test_tip_and_jerk_limits_hold_at_breaks() -> None:
     lower, upper = bounds(2 * np.pi, 5)
     limits = bik.Limits(lower=lower, upper=upper, acceleration=8.0, jerk=100.0, tip_speed=0.1)
     plan = bik.plan_along_path(UR5E, poses, limits=limits, breaks=True)
-    assert plan.success and len(plan.breaks) == 1
+    assert plan.success
+    assert len(plan.breaks) == 1
     motion = plan.trajectory
     t = np.linspace(0.0, motion.duration, 20001)
     speed = np.linalg.norm(np.diff(UR5E.fk(motion.at(t)[0])[:, :3, 3], axis=0), axis=1) / t[1]
@@ -239,7 +252,8 @@ def test_a_slower_timing_keeps_the_breaks() -> None:
     slow = plan.retime(bik.Limits(velocity=0.3, acceleration=1.0))
     factor = slow.trajectory.duration / plan.trajectory.duration
     [before], [after] = plan.breaks, slow.breaks
-    assert after.start == pytest.approx(factor * before.start) and after.end == pytest.approx(factor * before.end)
+    assert after.start == pytest.approx(factor * before.start)
+    assert after.end == pytest.approx(factor * before.end)
     assert (after.at, after.until, after.reason) == (before.at, before.until, before.reason)
 
 
@@ -259,10 +273,46 @@ def test_the_square_of_cppflow_is_followed_with_one_break() -> None:
     file = SHARED / "motionbenchmaker/robots/panda/panda.urdf"
     robot = bik.Robot.from_urdf(file, base=problem["base"], tip=problem["tip"], collision=None)
     limits = bik.Limits(acceleration=5.0, lower=problem["lower"], upper=problem["upper"])
-    with pytest.raises(bik.InvalidInputError, match=r"points 15\d to 18\d of the path.*joint 'panda_joint5' at its limit"):
+    with pytest.raises(
+        bik.InvalidInputError, match=r"points 15\d to 18\d of the path.*joint 'panda_joint5' at its limit"
+    ):
         bik.plan_along_path(robot, poses, limits=limits)
     plan = bik.plan_along_path(robot, poses, limits=limits, breaks=True)
-    assert plan.success and len(plan.breaks) == 1
+    assert plan.success
+    assert len(plan.breaks) == 1
     [only] = plan.breaks
-    assert 150 < only.at < 155 and 180 < only.until < 183 and "'panda_joint5'" in only.reason
+    assert 150 < only.at < 155
+    assert 180 < only.until < 183
+    assert "'panda_joint5'" in only.reason
     require_sound(plan, poses, np.array(problem["lower"]), np.array(problem["upper"]), acceleration=5.0)
+
+
+@needs_shared
+@pytest.mark.parametrize(("name", "longest"), [("panda__1cube", 7.6), ("panda__2cubes", 12.6)])
+def test_paths_of_cppflow_among_boxes_are_short(name: str, longest: float) -> None:
+    problem = json.loads((SHARED / f"cppflow/{name}.json").read_text())
+    rows = np.loadtxt(SHARED / f"cppflow/{name}.csv", delimiter=",", skiprows=1)
+    poses = np.array([bik.pose(row[:3], wxyz=row[3:]) for row in rows])
+    files = SHARED / "motionbenchmaker/robots/panda"
+    robot = bik.Robot.from_urdf(
+        files / "panda_spherized.urdf", base=problem["base"], tip=problem["tip"], srdf=files / "panda.srdf"
+    )
+    limits = bik.Limits(acceleration=5.0, lower=problem["lower"], upper=problem["upper"])
+    plan = bik.plan_along_path(
+        robot,
+        poses,
+        limits=limits,
+        obstacles=[bik.obstacles.Box(box["center"], box["size"]) for box in problem["boxes"]],
+        margin=1e-4,
+        accuracy=1e-4,
+        objective="joint_travel",
+        stop=bik.Stop(max_evaluations=1),
+    )
+    assert plan.success
+    assert plan.breaks == []
+    tips = robot.fk(q := plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, 20001))[0])
+    at = [int(np.linalg.norm(tips[:, :3] - pose[:3], axis=(1, 2)).argmin()) for pose in poses]
+    assert at == sorted(at)
+    assert np.linalg.norm(tips[at, :3, 3] - poses[:, :3, 3], axis=1).max() < 2e-4  # sampled in time
+    assert np.abs(np.diff(q[at], axis=0)).sum() <= longest
+    assert np.degrees(np.abs(np.diff(q[at], axis=0)).max()) <= 7.0

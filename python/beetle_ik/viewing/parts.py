@@ -155,11 +155,13 @@ class Parts:
         self._draw_breaks(result if isinstance(result, Plan) else None)
 
     def _draw_breaks(self, plan: Plan | None) -> None:
-        """Draws the ways of the tip beside its path, with the reason at the beginning of each, in place of earlier ones."""
+        """Draws the ways of the tip beside its path, each with its reason, in place of earlier ones."""
         scene = self._page.server.scene
         while self._breaks:
             self._breaks.pop().remove()
-        for i, each in enumerate([] if plan is None else plan.breaks):
+        if plan is None:
+            return
+        for i, each in enumerate(plan.breaks):
             way = plan.robot.fk(plan.trajectory.at(np.linspace(each.start, each.end, _BESIDE))[0])[:, :3, 3]
             segments = np.stack((way[:-1], way[1:]), axis=1)
             name = f"/breaks/{i}"

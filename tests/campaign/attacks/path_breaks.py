@@ -1,12 +1,12 @@
-"""Paths of a planar arm through positions that it reaches or not, with few or many degrees of its joints, followed with breaks."""
+"""Paths of a planar arm through positions that it reaches or not, followed with breaks."""
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 
-from .. import typed
 from ..attack import Attack, BrokenError, Case
 
 SAMPLES = 2001
@@ -73,7 +73,7 @@ class PathBreaks(Attack):
             if not each.reason:
                 raise BrokenError("a break has no reason", each)
         ends = points[:, :2]
-        off = np.min([_distance(tips, a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)], axis=0)
+        off = np.min([_distance(tips, a, b) for a, b in itertools.pairwise(ends)], axis=0)
         if off[~away].max(initial=0.0) > OFF * np.ptp(ends, axis=0).max():
             raise BrokenError("the tip leaves the path between breaks", float(off[~away].max()))
         return SAMPLES

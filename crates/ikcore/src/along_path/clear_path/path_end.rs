@@ -3,6 +3,7 @@
 use super::passage::{Passage, Waypoint};
 use crate::along_path::missed_points::missed_at;
 use crate::along_path::timed::PathProblem;
+use crate::error::Error;
 use crate::math::vector::largest_difference;
 use crate::obstacle::ClearSpace;
 use crate::robot::limit_rounding;
@@ -73,7 +74,8 @@ fn beyond_limit(problem: &PathProblem<'_>, q: &[f64]) -> Option<String> {
 fn unmet(passage: &Passage<'_>, fraction: f64) -> String {
     let PathProblem { robot, tip_path, options, .. } = passage.problem;
     match missed_at(robot, tip_path, fraction, options.seed) {
-        Ok(Some(missed)) => missed.to_string(),
+        Ok(Some(Error::Unreachable { problem, .. })) => format!("it cannot be reached: {problem}"),
+        Ok(Some(Error::NotFound { problem, .. })) => format!("no configuration was found: {problem}"),
         _ => "a singularity: no configuration on this branch of the arm leads on".into(),
     }
 }

@@ -180,7 +180,7 @@ impl<'a> Divider<'a> {
         let from = (self.fractions[layer], &q[..]);
         let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[to]);
         let place = self.passage.problem.tip_path.point_in_words(self.fractions[to]);
-        format!("before {place}, {why}")
+        format!("towards {place}, {why}")
     }
 
     /// Moves a break away from the place where the part before it ends: to the middle of what both parts can follow. The arm is at a
