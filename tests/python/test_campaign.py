@@ -159,6 +159,10 @@ SPOILED = {
         "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
         "what is kept does not hold",
     ),
+    "path_breaks": (
+        "points = points + 0.5",
+        "the tip leaves the path between breaks",
+    ),
     "tip_limits": (
         "powers = motion.coefficients\nscale = 1e4 ** np.arange(powers.shape[2])\n"
         "motion = bik.Trajectory(motion.time / 1e4, powers * scale)",

@@ -251,6 +251,7 @@ ROWS: list[Row] = [
     ("plan_along_path", Invalid, lambda at: api.plan_along_path(PANDA, [[0.4, 0.0, 0.5]], limits=RATED), 'path: it needs at least 2 points, got 1'),
     ("plan_along_path", Invalid, lambda at: api.plan_along_path(PANDA, [[9.0, 0.0, 0.5], [9.0, 0.1, 0.5]], limits=RATED), 'points 0 to 1 of the path cannot be reached: the nearest configurations found within the limits stay up to 8.144 m away'),
     ("plan_along_path", Invalid, lambda at: api.plan_along_path(PLANAR, LINE_XY, limits=RATED, obstacles=[BALL]), f"robot 'planar3' {NO_CAPSULES}"),
+    ("plan_along_path", Invalid, lambda at: api.plan_along_path(PLANAR, LINE_XY, method="tpbso", limits=RATED, breaks=True), 'leaving the path at breaks needs method="timed"'),
     ("plan_along_path", Limit, lambda at: api.plan_along_path(PANDA, LINE, limits=CROSSED), "joint 'panda_joint1': lower limit 1 is above upper limit -1"),
     ("plan_along_path", Unsupported, lambda at: api.plan_along_path(PANDA, LINE, limits=VARYING), 'method="timed" cannot honour time-varying velocity limits: give numbers'),
     ("plan_along_path", Unsupported, lambda at: api.plan_along_path(PANDA, LINE), 'method="timed" cannot honour infinite acceleration limits: joint \'panda_joint1\' could start at any speed; give acceleration limits'),
