@@ -12,7 +12,7 @@ import beetle_ik as bik
 sys.path.append(str(Path(__file__).parents[1] / "python"))
 from dynamics_oracle import DynamicsOracle, assert_near, states
 
-STATES = 1_000
+STATES = 100
 
 # Files with an inertia that no body has, on a link that moves, and the link.
 IMPOSSIBLE = {
