@@ -42,7 +42,10 @@ def with_masses(robot: bik.Robot, seed: int) -> bik.Robot:
     rng = np.random.default_rng(seed)
     links = robot.all_link_names
     return robot.with_inertias(
-        [bik.Inertia(link, float(rng.choice([1.0, 0.1, 3.0])), rng.normal(size=3) * 0.1, moments(rng)) for link in links]
+        [
+            bik.Inertia(link, float(rng.choice([1.0, 0.1, 3.0])), rng.normal(size=3) * 0.1, moments(rng))
+            for link in links
+        ]
     )
 
 
@@ -416,7 +419,10 @@ WRONG: list[tuple[Any, str]] = [
         lambda: PANDA.torques([Q, Q], qdd=Q),
         "joint accelerations of robot 'panda': expected shape (2, 7), that of the joint angles, got (7,)",
     ),
-    (lambda: PANDA.torques(Q, Q * np.nan), "joint velocities must be finite, but joint 'panda_joint1' of configuration 0 is NaN"),
+    (
+        lambda: PANDA.torques(Q, Q * np.nan),
+        "joint velocities must be finite, but joint 'panda_joint1' of configuration 0 is NaN",
+    ),
     (lambda: PANDA.torques(Q, wrench=[1, 2, 3]), "wrench of robot 'panda': expected shape (6,), got (3,)"),
     (
         lambda: PANDA.torques([Q, Q], wrench=np.zeros((3, 6))),

@@ -11,6 +11,7 @@ from . import (
     command_line,
     dead_ends,
     described,
+    doors,
     dynamics,
     held_arms,
     joint_weights,
@@ -20,6 +21,7 @@ from . import (
     levels,
     motion,
     own_points,
+    path_breaks,
     paths_over,
     programs,
     readers,
@@ -57,6 +59,7 @@ _MODULES = (
     clearance,
     clear_curves,
     own_points,
+    path_breaks,
     paths_over,
     readers,
     xacro_files,
@@ -65,6 +68,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use ikcore::dynamics::Inertia;
 use ikcore::nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Rotation3, Vector3};
+use ikcore::load::UrdfOptions;
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{BaseLimits, MobileBase, Motions, Robot};
 
@@ -21,7 +22,9 @@ fn robots() -> Vec<Robot> {
         velocity: vec![1.0; bound.len()],
         acceleration: vec![1.0; bound.len()],
     };
-    let mut robots = vec![two_arms()];
+    let tips = ["left_tool", "right_tool"].map(str::to_owned).to_vec();
+    let pair = Robot::from_urdf_with(&two_arms(), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap();
+    let mut robots = vec![pair];
     for seed in 0..16 {
         let chain = RandomChain::new(seed, 1 + seed as usize % 8, 14).robot;
         robots.push(match seed % 4 {

@@ -25,11 +25,10 @@ pub(super) fn largest_factor(motion: &Trajectory, enough: f64, of: &mut impl Int
     let mut walk = Walk { of, enough: enough.max(1e-9), seen: 0.0, proven: 0.0, intervals: 0 };
     let n = motion.joints().len();
     let segments = || motion.coefficients().chunks_exact(n).zip(motion.knots().windows(2));
-    for (polynomials, ends) in segments() {
-        walk.see(polynomials, [0.0, ends[1] - ends[0]]);
-    }
-    for (polynomials, ends) in segments() {
-        walk.halve(polynomials, [0.0, ends[1] - ends[0]], 0);
+    let bounds: Vec<f64> =
+        segments().map(|(polynomials, ends)| walk.see(polynomials, [0.0, ends[1] - ends[0]])).collect();
+    for ((polynomials, ends), bound) in segments().zip(bounds) {
+        walk.take(polynomials, [0.0, ends[1] - ends[0]], bound, 0);
     }
     walk.proven
 }
@@ -53,16 +52,18 @@ impl<F: IntervalFactor> Walk<'_, F> {
         bound
     }
 
-    fn halve(&mut self, polynomials: &[Coefficients], [from, to]: [f64; 2], depth: usize) {
+    /// Takes the bound over an interval, or halves it.
+    fn take(&mut self, polynomials: &[Coefficients], [from, to]: [f64; 2], bound: f64, depth: usize) {
         self.intervals += 1;
-        let bound = self.see(polynomials, [from, to]);
         let most = if self.seen > self.enough { self.seen * (1.0 + TIGHT) } else { self.enough };
         if bound <= most.max(self.proven) || depth == DEEPEST || self.intervals > MOST_INTERVALS {
             self.proven = self.proven.max(bound);
             return;
         }
         let middle = 0.5 * (from + to);
-        self.halve(polynomials, [from, middle], depth + 1);
-        self.halve(polynomials, [middle, to], depth + 1);
+        for half in [[from, middle], [middle, to]] {
+            let bound = self.see(polynomials, half);
+            self.take(polynomials, half, bound, depth + 1);
+        }
     }
 }

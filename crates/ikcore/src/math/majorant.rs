@@ -46,7 +46,13 @@ impl Majorant {
     /// Of the product; of the cross product or dot product of vectors too.
     #[inline]
     pub fn times(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|k| (0..=k).map(|i| self.0[i] * other.0[k - i]).sum()))
+        let mut product = [0.0; ORDER];
+        for (i, one) in self.0.iter().enumerate() {
+            for (sum, other) in product[i..].iter_mut().zip(&other.0) {
+                *sum += one * other;
+            }
+        }
+        Self(product)
     }
 
     /// Of a multiple.

@@ -10,6 +10,7 @@
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
+//! | `bounding_line` | lines that bound the acceleration along the path |
 //! | `strips` | the acceleration limits |
 //! | `tip_segments` | the limits of tips over segments |
 //! | `torque_segments` | the limits of joint torques over segments |
@@ -23,6 +24,7 @@
 //! | `limit_share` | how much of each limit a motion uses |
 //! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
 
+mod bounding_line;
 mod compose;
 mod constant_limits;
 mod derivatives;

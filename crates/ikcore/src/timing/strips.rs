@@ -4,24 +4,11 @@
 //! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
 //! convex.
 
+use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::tip_segments::TipSegments;
-use super::torque_segments::TorqueSegments;
-
-/// The line u = offset - slope x.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
-    pub offset: f64,
-    pub slope: f64,
-}
-
-impl Line {
-    #[inline]
-    pub(super) fn at(self, x: f64) -> f64 {
-        self.offset - self.slope * x
-    }
-}
+use super::torque_segments::TorqueBounds;
 
 /// Strips, each given by its upper line. The lower line is parallel and has the negative offset.
 #[derive(Debug, Default)]
@@ -35,10 +22,6 @@ pub(super) struct Strips {
     /// The largest u from rest.
     pub launch: f64,
 }
-
-/// A coefficient of u below this fraction of the largest counts as zero: its line would be so steep that it is mostly
-/// rounding, and it hardly bounds u.
-const NEGLIGIBLE_SLOPE: f64 = 1e-9;
 
 impl Strips {
     pub(super) fn new(joints: usize) -> Self {
@@ -99,24 +82,11 @@ impl Strips {
         });
     }
 
-    /// Adds the half-planes of joint torques over a segment.
-    pub(super) fn bound(&mut self, torques: &TorqueSegments<'_>, segment: usize) {
-        let mut largest = 0.0_f64;
-        torques.half_planes(segment, |[a, ..]| largest = largest.max(a.abs()));
-        let [above, below] = &mut self.bounds;
-        torques.half_planes(segment, |[a, b, c]| {
-            if a.abs() <= NEGLIGIBLE_SLOPE * largest {
-                self.largest_x = self.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
-                return;
-            }
-            let line = Line { offset: c / a, slope: b / a };
-            if a > 0.0 {
-                above.push(line);
-                self.launch = self.launch.min(line.offset);
-            } else {
-                below.push(line);
-            }
-        });
+    /// Adds the bounds of joint torques.
+    pub(super) fn bound(&mut self, TorqueBounds { lines, largest_x }: &TorqueBounds) {
+        self.largest_x = self.largest_x.min(*largest_x);
+        self.launch = lines[0].iter().map(|line| line.offset).fold(self.launch, f64::min);
+        self.bounds.iter_mut().zip(lines).for_each(|(all, more)| all.extend_from_slice(more));
     }
 
     /// The lowest upper line at `x`.

@@ -8,6 +8,7 @@ use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
 use super::time_scaling::within_limits;
+use super::torque_segments::KnownTorques;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
@@ -46,7 +47,8 @@ pub fn time_optimal(path: &JointPath, limits: &ConstantLimits, options: &TimingO
 pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
-    let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
+    let mut known = KnownTorques::default();
+    let mut fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends, &mut known);
     let profile = match options.gridpoints {
         Some(gridpoints) => {
             check_gridpoints(gridpoints)?;
@@ -89,7 +91,8 @@ pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Re
     let limits = &limits.without_torque();
     let of_path = |path: &JointPath| {
         let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-        let profile = SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends)?;
+        let profile =
+            SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends, &mut KnownTorques::default())?;
         Ok(jerk_limited::rough(path, &profile, limits)?.duration())
     };
     paths.iter().map(of_path).sum()
@@ -102,7 +105,9 @@ pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Re
 /// None in practice: a motion from rest to rest always exists.
 pub(crate) fn coarse_duration(path: &JointPath, limits: &ConstantLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-    SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends).map(|profile| profile.duration())
+    let profile =
+        SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends, &mut KnownTorques::default())?;
+    Ok(profile.duration())
 }
 
 /// Returns the range of squared path speeds for a joint speed at an end. If dq/ds vanishes, the joints are at rest at

@@ -3,6 +3,10 @@
 //! Along a path the torque of a joint is a(s) u + b(s) x + g(s), where x grows by 2 u s. Over a segment a, b and g are parabolas up to rests; so the
 //! torque is a cubic, and bounds on its four Bernstein coefficients bound it at every point.
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
 use super::grid::Segment;
 use super::joint_path::JointPath;
@@ -21,7 +25,7 @@ const DEEP: usize = 5;
 const DEEPEST: usize = 12;
 
 /// A half-plane a u + b x <= c, with positive c.
-pub(super) type HalfPlane = [f64; 3];
+type HalfPlane = [f64; 3];
 
 /// Torques over a part of a segment.
 #[derive(Debug)]
@@ -35,13 +39,23 @@ struct Part {
     rests: Vec<Rest>,
 }
 
-/// Torques over the segments of a grid.
+/// Bounds on u over a segment where x grows by 2 u from its start on.
 #[derive(Debug)]
-pub(super) struct TorqueSegments<'a> {
-    torques: &'a JointTorques,
-    parts: Vec<Part>,
-    /// Where the parts of each segment begin, and the number of all.
-    begins: Vec<usize>,
+pub(super) struct TorqueBounds {
+    /// From above and from below.
+    pub lines: [Vec<Line>; 2],
+    /// The bound on x from half-planes that do not bound u.
+    pub largest_x: f64,
+}
+
+/// Segments that were met before, by piece, start, length and largest x: a grid that is refined keeps most of them.
+pub(super) type KnownTorques = HashMap<(usize, [u64; 3]), Rc<TorqueBounds>>;
+
+/// A part that is not finished: its ends, and the terms there.
+struct Open {
+    ends: [f64; 2],
+    terms: [TorqueTerms; 2],
+    halvings: usize,
 }
 
 /// Path, limits and scratch memory.
@@ -53,79 +67,96 @@ struct Builder<'a> {
     bend: BendScratch,
 }
 
-/// A part that is not finished: its ends, and the terms there.
-struct Open {
-    ends: [f64; 2],
-    terms: [TorqueTerms; 2],
-    halvings: usize,
+/// Returns the bounds by joint torques over these segments of `path`, at whose ends x is at most that of `curve`; none without limits.
+///
+/// # Errors
+/// [`Error::Infeasible`] where a joint cannot hold the arm; [`Error::Interrupted`].
+pub(super) fn torque_bounds(
+    path: &JointPath,
+    segments: &[Segment],
+    curve: &[f64],
+    limits: &ConstantLimits,
+    known: &mut KnownTorques,
+) -> Result<Vec<Rc<TorqueBounds>>> {
+    let Some(torques) = &limits.torques else { return Ok(vec![]) };
+    let mut builder = Builder { path, limits, torques, point: torques.point(), bend: torques.bend_scratch() };
+    let mut all = Vec::with_capacity(segments.len());
+    for (i, segment) in segments.iter().enumerate() {
+        checkpoint_at(i)?;
+        let largest_x = curve[i].max(curve[i + 1]);
+        let key = (segment.piece, [segment.from, segment.length, largest_x].map(f64::to_bits));
+        let bounds = match known.get(&key) {
+            Some(bounds) => Rc::clone(bounds),
+            None => {
+                let bounds = Rc::new(builder.bounds(segment, largest_x)?);
+                known.insert(key, Rc::clone(&bounds));
+                bounds
+            }
+        };
+        all.push(bounds);
+    }
+    Ok(all)
 }
 
-impl<'a> TorqueSegments<'a> {
-    /// Computes the torques along `path` over these segments, at whose ends x is at most that of `curve`; `None` without limits.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] where a joint cannot hold the arm; [`Error::Interrupted`].
-    pub(super) fn new(
-        path: &JointPath,
-        segments: &[Segment],
-        curve: &[f64],
-        limits: &'a ConstantLimits,
-    ) -> Result<Option<Self>> {
-        let Some(torques) = &limits.torques else { return Ok(None) };
-        let (point, bend) = (torques.point(), torques.bend_scratch());
-        let mut builder = Builder { path, limits, torques, point, bend };
-        let (mut parts, mut begins) = (Vec::with_capacity(segments.len()), vec![0]);
-        for (i, segment) in segments.iter().enumerate() {
-            checkpoint_at(i)?;
-            let terms = [builder.terms(segment, 0.0)?, builder.terms(segment, segment.length)?];
-            let fastest = builder.fastest(segment, curve[i].max(curve[i + 1]));
-            let whole = Open { ends: [0.0, segment.length], terms, halvings: 0 };
-            builder.push(segment, fastest, whole, &mut parts)?;
-            begins.push(parts.len());
-        }
-        Ok(Some(Self { torques, parts, begins }))
-    }
-
-    /// Calls `keep` with half-planes inside the limits over a segment, where x grows by 2 u from its start on.
-    pub(super) fn half_planes(&self, segment: usize, mut keep: impl FnMut(HalfPlane)) {
-        for part in &self.parts[self.begins[segment]..self.begins[segment + 1]] {
-            for (joint, limit) in self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
-                part.half_planes(joint, limit * (1.0 - TIGHT), &mut keep);
+impl TorqueBounds {
+    /// Bounds inside these half-planes. Those that hold for all u and x up to these are left out.
+    fn new(half_planes: impl Iterator<Item = HalfPlane>, [largest_u, largest_x]: [f64; 2]) -> Self {
+        let binds = |[a, b, c]: &HalfPlane| !(a.abs() * largest_u + b.max(0.0) * largest_x <= *c);
+        let binding: Vec<HalfPlane> = half_planes.filter(binds).collect();
+        let steepest = binding.iter().fold(0.0_f64, |largest, [a, ..]| largest.max(a.abs()));
+        let mut bounds = Self { lines: [vec![], vec![]], largest_x: f64::INFINITY };
+        for [a, b, c] in binding {
+            if a.abs() <= NEGLIGIBLE_SLOPE * steepest {
+                bounds.largest_x = bounds.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
+            } else {
+                bounds.lines[usize::from(a < 0.0)].push(Line { offset: c / a, slope: b / a });
             }
         }
+        bounds
     }
 }
 
 impl Part {
-    fn half_planes(&self, joint: usize, limit: f64, keep: &mut impl FnMut(HalfPlane)) {
+    /// The half-planes in which a joint keeps its limit.
+    fn half_planes(&self, joint: usize, limit: f64) -> impl Iterator<Item = HalfPlane> + use<> {
         let of =
             |term: fn(&TorqueTerms) -> &[f64]| control_points(self.terms.each_ref().map(|terms| term(terms)[joint]));
         let [a, b, g] = [of(|terms| &terms.of_change), of(|terms| &terms.of_square), of(|terms| &terms.hold)];
         let [rest_a, rest_b, rest_g] = self.rests[joint];
-        let (a3, b3, g3) = (raised(a), raised(b), raised(g));
+        let to = self.from + self.length;
         // x(s) = x + 2 u s, and s times a parabola is a cubic.
-        let slope = times_parameter(b, [self.from, self.from + self.length]);
-        let farthest = 2.0 * (self.from + self.length);
-        let rest_a = rest_a + farthest * rest_b;
-        for i in 0..4 {
-            let (a, b, g) = (a3[i] + 2.0 * slope[i], b3[i], g3[i]);
-            for side in [1.0, -1.0] {
+        let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [self.from, to]));
+        let rest_a = rest_a + 2.0 * to * rest_b;
+        (0..4).flat_map(move |i| {
+            let (a, b, g) = (a[i] + 2.0 * slope[i], b[i], g[i]);
+            [1.0, -1.0].into_iter().flat_map(move |side| {
                 let c = limit - side * g - rest_g;
-                keep([side * a + rest_a, side * b + rest_b, c]);
-                keep([side * a - rest_a, side * b + rest_b, c]);
-            }
-        }
+                [rest_a, -rest_a].map(|rest| [side * a + rest, side * b + rest_b, c])
+            })
+        })
     }
 }
 
 impl Builder<'_> {
-    /// Largest d2s/dt2 and (ds/dt)^2 on a segment, for judging rests.
-    fn fastest(&self, segment: &Segment, square: f64) -> [f64; 2] {
-        let change = |joint: usize| {
-            let [_, first, second] = self.path.joint_at(segment.piece, segment.from + 0.5 * segment.length, joint);
-            (self.limits.acceleration[joint] + second.abs() * square) / first.abs()
+    fn bounds(&mut self, segment: &Segment, largest_x: f64) -> Result<TorqueBounds> {
+        let terms = [self.terms(segment, 0.0)?, self.terms(segment, segment.length)?];
+        let most = [self.largest_u(segment, largest_x), largest_x];
+        let mut parts = Vec::with_capacity(1);
+        self.push(segment, most, Open { ends: [0.0, segment.length], terms, halvings: 0 }, &mut parts)?;
+        let limited = self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite());
+        let half_planes = limited.flat_map(|(joint, limit)| {
+            parts.iter().flat_map(move |part| part.half_planes(joint, limit * (1.0 - TIGHT)))
+        });
+        Ok(TorqueBounds::new(half_planes, most))
+    }
+
+    /// A bound of u by the acceleration limits at the start of a segment: |q' u + q'' x| is at most the acceleration.
+    fn largest_u(&self, segment: &Segment, largest_x: f64) -> f64 {
+        let of_joint = |joint: usize| {
+            let [_, first, second] = self.path.joint_at(segment.piece, segment.from, joint);
+            (self.limits.acceleration[joint] + second.abs() * largest_x) / first.abs()
         };
-        [(0..self.torques.dof()).map(change).fold(f64::INFINITY, f64::min), square]
+        (0..self.torques.dof()).map(of_joint).filter(|u| !u.is_nan()).fold(f64::INFINITY, f64::min)
     }
 
     fn push(&mut self, segment: &Segment, fastest: [f64; 2], open: Open, parts: &mut Vec<Part>) -> Result<()> {
