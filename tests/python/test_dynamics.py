@@ -1,4 +1,4 @@
-"""Dynamics: Pinocchio and MuJoCo on generated robots, energy, payloads, friction, masses of files, storage and plots."""
+"""Dynamics: Pinocchio and MuJoCo on generated robots, energy, payloads, friction, masses of files, storage, plots."""
 
 import pickle
 from typing import Any
@@ -118,7 +118,7 @@ def test_a_floating_base_has_the_dynamics_of_a_free_flyer(seed: int) -> None:
     free = pinocchio.buildModelFromXML(xml, pinocchio.JointModelFreeFlyer())
     data = free.createData()
     for q, qd, qdd in states(robot, 25, seed):
-        # Rotation, angular velocity and its rate in the frame of the base, by exponentials and central differences.
+        # Angular velocity of the base and its rate, in its frame, by exponentials and differences.
         turn = pinocchio.exp3(q[3:6])
 
         def angular(t: float, phi: Array = q[3:6], rate: Array = qd[3:6], change: Array = qdd[3:6]) -> Array:
@@ -249,15 +249,18 @@ def test_friction_and_rotor_of_a_joint_count() -> None:
 
 
 def test_a_mimic_joint_is_reflected_to_its_master() -> None:
-    xml = """
-    <robot name="twins"> <link name="base"/> <link name="a">{0}</link> <link name="b">{0}</link> <link name="c">{0}</link>
-      <joint name="j" type="continuous"> <parent link="base"/> <child link="a"/> <axis xyz="0 1 0"/>
-        <dynamics damping="1" friction="0.1"/> </joint>
-      <joint name="k" type="continuous"> <parent link="a"/> <child link="b"/> <axis xyz="0 1 0"/>
-        <mimic joint="j" multiplier="-2"/> <dynamics damping="1" friction="0.1"/> </joint>
-      <joint name="l" type="continuous"> <parent link="base"/> <child link="c"/> <axis xyz="0 1 0"/>
-        <mimic joint="j" multiplier="3"/> <dynamics damping="1" friction="0.1"/> </joint>
-    </robot>""".format(BOB)
+    joint = (
+        '<joint name="{0}" type="continuous"> <parent link="{1}"/> <child link="{2}"/> <axis xyz="0 1 0"/> {3}'
+        '<dynamics damping="1" friction="0.1"/> </joint>'
+    )
+    links = "".join(f'<link name="{name}">{BOB}</link>' for name in "abc")
+    xml = (
+        f'<robot name="twins"> <link name="base"/> {links}'
+        + joint.format("j", "base", "a", "")
+        + joint.format("k", "a", "b", '<mimic joint="j" multiplier="-2"/>')
+        + joint.format("l", "base", "c", '<mimic joint="j" multiplier="3"/>')
+        + "</robot>"
+    )
     robot = bik.Robot.from_urdf(xml, tip="b")
     twice = robot.torques([0.4], [1.5]) - robot.torques([0.4], [-1.5])
     np.testing.assert_allclose(twice, [2 * (1.5 * (1 + 4 + 9) + 0.1 * (1 + 2 + 3))], atol=1e-12)
@@ -272,13 +275,13 @@ def test_a_mimic_joint_is_reflected_to_its_master() -> None:
         ),
         (
             INERTIAL.format(mass=1, matrix='ixx="1" iyy="1" izz="3"'),
-            "URDF line 4: <inertial> of link 'rod': the principal moments of inertia are 1.000e0, 1.000e0, 3.000e0 kg m^2: "
-            "the largest cannot exceed the sum of the others",
+            "URDF line 4: <inertial> of link 'rod': the principal moments of inertia are 1.000e0, 1.000e0, "
+            "3.000e0 kg m^2: the largest cannot exceed the sum of the others",
         ),
         (
             INERTIAL.format(mass=1, matrix='ixx="1" iyy="1" izz="-1"'),
-            "URDF line 4: <inertial> of link 'rod': the principal moments of inertia are -1.000e0, 1.000e0, 1.000e0 kg m^2: "
-            "none can be negative",
+            "URDF line 4: <inertial> of link 'rod': the principal moments of inertia are -1.000e0, 1.000e0, "
+            "1.000e0 kg m^2: none can be negative",
         ),
         (
             INERTIAL.format(mass=0, matrix=ROUND),
@@ -365,11 +368,13 @@ def test_masses_are_part_of_a_robot() -> None:
     robot = with_masses(PANDA, 1).with_payload(1.0).with_gravity((0, 0, -1.62))
     assert robot != PANDA
     again = pickle.loads(pickle.dumps(robot))
-    assert again == robot and hash(again) == hash(robot)
+    assert again == robot
+    assert hash(again) == hash(robot)
     assert (again.inertias, again.payloads, again.gravity.tolist()) == (robot.inertias, robot.payloads, [0, 0, -1.62])
     np.testing.assert_array_equal(again.torques(Q), robot.torques(Q))
     inertia = robot.inertias[0]
-    assert pickle.loads(pickle.dumps(inertia)) == inertia and hash(inertia) == hash(robot.inertias[0])
+    assert pickle.loads(pickle.dumps(inertia)) == inertia
+    assert hash(inertia) == hash(robot.inertias[0])
     moved = robot.with_base(bik.pose([1, 2, 3])).with_limits(velocity=1.0).with_tool(bik.pose([0, 0, 0.1]))
     np.testing.assert_allclose(moved.torques(Q), robot.torques(Q), atol=1e-12)
 
