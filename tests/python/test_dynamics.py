@@ -145,7 +145,8 @@ MJCF = """
   <inertial pos="0.1 0 0.2" mass="2" fullinertia="0.04 0.05 0.03 0.001 0.002 0.003"/>
   <body name="fore" pos="0 0.1 0.4"><joint name="j2" pos="0 0.05 0" axis="1 1 0" range="-1 1" limited="true"/>
    <inertial pos="0 0 0.1" quat="1 0.2 0 0.1" mass="1.5" diaginertia="0.02 0.03 0.025"/>
-   <body name="hand" pos="0 0 0.3"><joint name="s" type="slide" axis="0 0 1" range="0 0.2" limited="true" armature="0.3"/>
+   <body name="hand" pos="0 0 0.3">
+    <joint name="s" type="slide" axis="0 0 1" range="0 0.2" limited="true" armature="0.3"/>
     <geom size="0.05" mass="0.4"/></body></body></body></body></worldbody>
 <actuator><motor joint="j1" gear="2" forcelimited="true" forcerange="-30 40"/></actuator></mujoco>
 """
