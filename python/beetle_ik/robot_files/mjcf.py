@@ -208,7 +208,8 @@ class _Reader:
             inner.append(f"<limit effort='{effort!r}'/>")
         dof = model.jnt_dofadr[joint]
         damping, friction, rotor = (
-            float(np.ravel(values[dof])[0]) for values in (model.dof_damping, model.dof_frictionloss, model.dof_armature)
+            float(np.ravel(values[dof])[0])
+            for values in (model.dof_damping, model.dof_frictionloss, model.dof_armature)
         )
         if damping or friction or rotor:
             inner.append(f"<dynamics damping='{damping!r}' friction='{friction!r}' armature='{rotor!r}'/>")
