@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo campaign soak dds-peer test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
+.PHONY: help demo test test-rust test-python zoo campaign soak derivatives dds-peer test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
     bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
@@ -40,6 +40,11 @@ campaign: $(VENV)/with-test  ## attacks on every promise: SEED=, and CASES= of e
 
 soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
 	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
+# JAX takes 400 MB, PyTorch up to 6 GB where its wheel brings CUDA.
+derivatives: $(VENV)/with-test  ## the tests of interop.jax and interop.torch, with both libraries
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[jax,torch]"
+	$(BIN)/python -m pytest tests/python/test_door_jax.py tests/python/test_door_torch.py tests/python/test_examples.py
 
 # Its crates are no part of the workspace, nor of its lock.
 dds-peer: $(VENV)/with-test  ## `beetle-ik ros` against RustDDS: 1,000 trajectories, restarts, damaged messages
