@@ -5,7 +5,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo campaign property-tests soak test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
+.PHONY: help demo test test-rust test-python zoo campaign property-tests soak dds-peer test-sdist release-check test-aarch64 miri audit lint \
+    lint-rust lint-python \
     bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
@@ -47,6 +48,11 @@ property-tests:  ## the drawn tests of the core with cases of their own in every
 
 soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
 	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
+# Its crates are no part of the workspace, nor of its lock.
+dds-peer: $(VENV)/with-test  ## `beetle-ik ros` against RustDDS: 1,000 trajectories, restarts, damaged messages
+	cargo build --release --manifest-path tests/dds_peer/Cargo.toml --target-dir target/dds_peer
+	$(BIN)/python tests/dds_peer/exchange.py target/dds_peer/release/dds_peer
 
 # What pip does where it finds no wheel; then the package of the core, as crates.io would build it.
 test-sdist: $(BIN)/maturin  ## the source distribution and the crates build and pass their tests where nothing else is

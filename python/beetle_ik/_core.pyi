@@ -386,6 +386,37 @@ class Robot:
             velocity: velocity limits, a number or one per joint (m/s, rad/s); None: unknown.
             acceleration: acceleration limits for `rated_limits`, likewise (m/s^2, rad/s^2).
         """
+    @property
+    def inertias(self) -> list[Inertia]: ...
+    @property
+    def payloads(self) -> list[Inertia]: ...
+    @property
+    def gravity(self) -> _Array: ...
+    @property
+    def has_dynamics(self) -> bool: ...
+    @property
+    def torque_limit(self) -> _Array: ...
+    def with_inertias(self, inertias: Mapping[str, Inertia] | Sequence[Inertia]) -> Robot: ...
+    def with_payload(
+        self,
+        mass: float,
+        *,
+        center: ArrayLike | None = None,
+        matrix: ArrayLike | None = None,
+        link: str | None = None,
+    ) -> Robot: ...
+    def with_gravity(self, gravity: ArrayLike) -> Robot: ...
+    def torques(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike | None = None,
+        qdd: ArrayLike | None = None,
+        *,
+        wrench: ArrayLike | None = None,
+    ) -> _Array: ...
+    def mass_matrix(self, q: ArrayLike) -> _Array: ...
+    def accelerations(self, q: ArrayLike, qd: ArrayLike, torques: ArrayLike) -> _Array: ...
+    def center_of_mass(self, q: ArrayLike) -> _Array: ...
     def with_held(self, hold: Mapping[str, float]) -> Robot:
         """Returns a copy with other values (rad, m) of joints beside the chain, for example
         `with_held({"finger_joint": 0.04})`.
@@ -3325,6 +3356,20 @@ class Body:
         """Origin of the body: "given", "attached", "collision shape" (of a file), or "mesh" and the name of its file."""
 
 @final
+class Inertia:
+    def __new__(
+        cls, link: str, mass: float, center: ArrayLike | None = None, matrix: ArrayLike | None = None
+    ) -> Inertia: ...
+    @property
+    def link(self) -> str: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def center(self) -> _Array: ...
+    @property
+    def matrix(self) -> _Array: ...
+
+@final
 class PreparedObstacles:
     """The obstacles of a `Scene`, read and prepared once; `carried` are link and name of each body that the robot carries there."""
 
@@ -3978,6 +4023,7 @@ class Plan:
     @property
     def moves(self) -> list[MoveReport]:
         """How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans."""
+    def torques(self, t: ArrayLike) -> _Array: ...
     def retime(self, limits: Limits) -> Plan:
         """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
         the plan keeps on the way, which is certified again.
@@ -4570,6 +4616,7 @@ class Trajectory:
         """Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped."""
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]:
         """Returns (time, q, qd, qdd) every `dt` (s) and at the end: (k,), and (k, n) each."""
+    def torques(self, robot: Robot, t: ArrayLike) -> _Array: ...
     def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory:
         """Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends."""
     def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None:

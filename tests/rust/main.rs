@@ -30,6 +30,9 @@ mod calibration {
 mod closed_form {
     mod branches;
 }
+mod dynamics {
+    mod laws;
+}
 mod error {
     mod promised;
     mod wrong_input;

@@ -11,6 +11,8 @@ from . import (
     command_line,
     dead_ends,
     described,
+    doors,
+    dynamics,
     held_arms,
     joint_weights,
     keeping,
@@ -19,6 +21,7 @@ from . import (
     levels,
     motion,
     own_points,
+    path_breaks,
     paths_over,
     programs,
     readers,
@@ -36,6 +39,7 @@ from . import (
 
 _MODULES = (
     kinematics,
+    dynamics,
     solving,
     round_poses,
     searching,
@@ -55,6 +59,7 @@ _MODULES = (
     clearance,
     clear_curves,
     own_points,
+    path_breaks,
     paths_over,
     readers,
     xacro_files,
@@ -63,6 +68,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -231,7 +231,8 @@ fn what_is_in_the_way_is_named() {
         plan.message()
     };
     let on_path = tip_path.positions()[12];
-    let advice = "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
+    let advice = "move the path or what is in the way, lower the margin, leave a part of the poses free by a task, or breaks, which let \
+                  the tool leave the path there and go on";
     let hand = said(vec![Shape::sphere(on_path, 0.04).unwrap()], 0.0);
     assert!(hand.starts_with("no clear plan for ") && hand.ends_with(advice), "{hand}");
     assert!(

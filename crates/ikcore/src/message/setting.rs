@@ -42,6 +42,8 @@ pub enum Setting {
     StartConfiguration,
     /// Values of other joints passed over.
     IgnoreExtra,
+    /// Breaks of a path, at which the tool leaves it and goes on.
+    Breaks,
     /// Distance beyond a limit in which a start is taken.
     StartSlack,
     /// Whole turns taken off, which brings a joint inside its limits.
@@ -77,6 +79,8 @@ pub enum Setting {
     Attach,
     /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
     WithoutRobot(&'static str),
+    /// Inertias of links, given to a robot.
+    Inertias,
     /// Angles that are converted from degrees before a call.
     RadiansFromDegrees,
     /// Angles that a call takes in degrees.
@@ -107,6 +111,7 @@ impl fmt::Display for Setting {
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",
             Self::IgnoreExtra => "ignoring extra names",
+            Self::Breaks => "breaks, which let the tool leave the path there and go on",
             Self::StartSlack => "start slack",
             Self::Wrap => "whole turns taken off bring it inside",
             Self::Clip => "moving it to the limit changes the pose",
@@ -124,6 +129,7 @@ impl fmt::Display for Setting {
             Self::CapsulesAlongLinks => "with_capsules_along_links",
             Self::Attach => "a robot that carries it",
             Self::WithoutRobot(_) => "without_robot",
+            Self::Inertias => "its links inertias",
             Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }
