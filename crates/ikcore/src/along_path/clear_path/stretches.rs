@@ -234,9 +234,8 @@ impl<'a> Divider<'a> {
         let (mut stretches, mut reasons) = (vec![], vec![]);
         let parts = std::mem::take(&mut self.parts);
         let first = parts.first().filter(|part| part.first > 0);
-        reasons.push(first.map(|part| {
-            self.reason(part.first, &part.sequence[0], part.first - 1, swept(&part.sequence))
-        }));
+        reasons
+            .push(first.map(|part| self.reason(part.first, &part.sequence[0], part.first - 1, swept(&part.sequence))));
         for (i, part) in parts.iter().enumerate() {
             let next = parts.get(i + 1).map_or(last, |next| next.first);
             let before = if part.first > 0 { reached } else { 0.0 };
