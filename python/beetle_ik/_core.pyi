@@ -3937,6 +3937,7 @@ def plan_along_path(
     margin: float | None = None,
     self_collision: bool | None = None,
     accuracy: float | None = None,
+    breaks: bool = False,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -3967,6 +3968,9 @@ def plan_along_path(
             thousandth of the path's extent,
             plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
             has tolerances, the accuracy is part of them and must not exceed the smallest.
+        breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
+            as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
+            go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
             solver of its own.
         stop: budgets; None: the method's own.
@@ -3980,7 +3984,7 @@ def plan_along_path(
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
-            a robot without bodies, or a start_q at which `keep` does not hold.
+            a robot without bodies, `breaks` with "tpbso", no way beside the path at a break, or a start_q at which `keep` does not hold.
         LimitError: limits that contradict each other; a start farther outside them than start_slack.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
@@ -4112,6 +4116,9 @@ class Plan:
         Raises:
             InvalidInputError: a robot without dynamics.
         """
+    @property
+    def breaks(self) -> list[Break]:
+        """Places where the tool leaves its path, with `breaks=True`, a list of `Break` in order; empty where it does not."""
     def retime(self, limits: Limits) -> Plan:
         """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
         the plan keeps on the way, which is certified again.
@@ -4246,6 +4253,28 @@ class Wait(Move):
     def seconds(self) -> float:
         """How long (s)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Break:
+    """A place where the tool leaves its path, and goes on with another posture of the arm or farther along."""
+
+    @property
+    def at(self) -> float:
+        """Where the tool leaves the path: the index of a point, with the part of the way to the next one (12.5 is halfway between points
+        12 and 13); for a `Path` its time (s).
+        """
+    @property
+    def until(self) -> float:
+        """Where it goes on, counted alike: at the same place, where nothing is left out; at the end of the path, where it does not come back."""
+    @property
+    def reason(self) -> str:
+        """Why the arm cannot go on along the path: a joint at its limit, a singularity, two bodies, or a point out of reach."""
+    @property
+    def start(self) -> float:
+        """When the tool leaves the path (s)."""
+    @property
+    def end(self) -> float:
+        """When it is back (s)."""
 
 @final
 class MoveReport:

@@ -12,7 +12,6 @@ use crate::plan::{
 };
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
-use crate::trajectory::Trajectory;
 
 /// Lengths (m) of the straight lines along the axis of the tool by which it leaves the path and comes back, longest first.
 const LINES: [Option<f64>; 4] = [Some(0.05), Some(0.02), Some(0.005), None];
@@ -171,12 +170,12 @@ impl BrokenPath<'_> {
 
     /// The plan of all pieces.
     fn joined(&self, pieces: Vec<Piece>) -> Result<Option<Plan>> {
-        let (mut motion, mut breaks): (Option<Trajectory>, Vec<Break>) = (None, vec![]);
+        let (mut whole, mut breaks): (Option<Plan>, Vec<Break>) = (None, vec![]);
         let (mut violations, mut evaluations, mut status) = (vec![], 0, Status::Solved);
         let (mut accuracy, mut surroundings, mut obstruction) = (0.0_f64, None, None);
         let mut least: Option<Clearance> = None;
         for piece in pieces {
-            let start = motion.as_ref().map_or(0.0, Trajectory::duration);
+            let start = whole.as_ref().map_or(0.0, |before| before.trajectory.duration());
             let (plan, place) = match piece {
                 Piece::Along(plan) => (Some(plan), None),
                 Piece::Beside { way, places, reason } => (way, Some((places, reason))),
@@ -186,26 +185,26 @@ impl BrokenPath<'_> {
                 let [at, until] = self.named(places);
                 breaks.push(Break { at, until, reason, start, end: start + moved });
             }
-            let Some(plan) = plan else { continue };
-            motion = Some(match &motion {
-                None => plan.trajectory,
-                Some(before) => before.then(&plan.trajectory, 0.0)?,
-            });
+            let Some(mut plan) = plan else { continue };
+            if let Some(before) = &whole {
+                plan.trajectory = before.trajectory.then(&plan.trajectory, 0.0)?;
+            }
             accuracy = accuracy.max(plan.accuracy.unwrap_or(0.0));
-            surroundings = surroundings.or(plan.surroundings);
-            obstruction = obstruction.or(plan.obstruction);
+            surroundings = surroundings.or_else(|| plan.surroundings.clone());
+            obstruction = obstruction.or_else(|| plan.obstruction.clone());
             if let Some(Clearance { distance, .. }) = plan.clearance {
                 least = Some(Clearance::at_least(least.map_or(distance, |least| least.distance.min(distance))));
             }
             if status == Status::Solved {
                 status = plan.status;
             }
-            violations.extend(plan.violations);
+            violations.append(&mut plan.violations);
             evaluations += plan.evaluations;
+            whole = Some(*plan);
         }
-        let Some(motion) = motion else { return Ok(None) };
+        let Some(Plan { trajectory, .. }) = whole else { return Ok(None) };
         let objective: Cost = self.options.objective;
-        let cost = objective.of(self.robot, &motion);
+        let cost = objective.of(self.robot, &trajectory);
         Ok(Some(Plan {
             breaks,
             violations,
@@ -216,7 +215,7 @@ impl BrokenPath<'_> {
             clearance: least,
             accuracy: Some(accuracy),
             reference: Some(self.tip_path.positions().to_vec()),
-            ..Plan::of(motion, objective, cost)
+            ..Plan::of(trajectory, objective, cost)
         }))
     }
 }
