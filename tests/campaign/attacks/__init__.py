@@ -10,6 +10,7 @@ from . import (
     clearance,
     command_line,
     dead_ends,
+    derivatives,
     described,
     dynamics,
     held_arms,
@@ -37,6 +38,7 @@ from . import (
 
 _MODULES = (
     kinematics,
+    derivatives,
     dynamics,
     solving,
     round_poses,

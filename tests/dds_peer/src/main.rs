@@ -10,24 +10,24 @@ use rustdds::policy::{Durability, History, Reliability};
 use rustdds::{CDRDeserializerAdapter, CDRSerializerAdapter, DomainParticipant, QosPolicies, QosPolicyBuilder, TopicKind};
 use serde::{de::DeserializeOwned, Deserialize, Serialize};
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Time {
     sec: i32,
     nanosec: u32,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Header {
     stamp: Time,
     frame_id: String,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Text {
     data: String,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct JointState {
     header: Header,
     name: Vec<String>,
@@ -36,14 +36,14 @@ struct JointState {
     effort: Vec<f64>,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct PoseStamped {
     header: Header,
     position: [f64; 3],
     orientation: [f64; 4],
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Point {
     positions: Vec<f64>,
     velocities: Vec<f64>,
@@ -52,7 +52,7 @@ struct Point {
     time_from_start: Time,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct JointTrajectory {
     header: Header,
     joint_names: Vec<String>,
