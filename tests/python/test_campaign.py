@@ -24,7 +24,7 @@ CASES = {
     "dead_ends": 6,
     "clear_plans": 2,
     "held_arms": 6,
-    "two_arm_plans": 4,
+    "two_arm_plans": 2,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
@@ -62,6 +62,11 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
 SPOILED = {
+    "calls_in_degrees": (
+        "found[:-1] *= 0.99",
+        "position_error is not the error",
+    ),
+    "led_by_twists": ("q[-1] = q[-1] + 0.01", "the velocity is beyond its limit"),
     "torques": ("torques = torques + 1e-3", "torques differ"),
     "joint_weights": ("solution = Changed(solution, q=solution.q + 0.02)", "solved, but not within the tolerance"),
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
@@ -154,6 +159,10 @@ SPOILED = {
     "tracker_keeps": (
         "q = q + np.linspace(0.0, 1.0, len(q))[:, None]",
         "what is kept does not hold",
+    ),
+    "path_breaks": (
+        "points = points + 0.5",
+        "the tip leaves the path between breaks",
     ),
     "tip_limits": (
         "powers = motion.coefficients\nscale = 1e4 ** np.arange(powers.shape[2])\n"

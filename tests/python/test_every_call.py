@@ -283,6 +283,7 @@ MADE_BY_THE_LIBRARY = [
     "BatchPlan",
     "BatchSolution",
     "Body",
+    "Break",
     "Calibration",
     "ControlSession",
     "Identifiability",

@@ -14,9 +14,10 @@ GALLERY = sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem not in
 
 @pytest.mark.filterwarnings("ignore:FigureCanvasAgg is non-interactive")
 @pytest.mark.parametrize("name", GALLERY)
-def test_the_example_runs(name: str) -> None:
+def test_the_example_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if name in NEEDS_JAX:
         pytest.importorskip("jax", reason="JAX is not installed")
+    monkeypatch.chdir(tmp_path)  # some write files
     runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
     assert plt.get_fignums()
 

@@ -233,7 +233,7 @@ fn tests_stand_in_the_rooms_of_the_core() {
     let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
     for file in tests.files() {
         let room = room_of(file);
-        let known = ["main", "common", "interface", "layers", "plain_words"].contains(&&*room)
+        let known = ["main", "common", "interface", "layers", "plain_words", "repeatable"].contains(&&*room)
             || LAYERS.iter().any(|(name, _)| *name == room);
         assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
     }

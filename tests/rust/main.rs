@@ -7,6 +7,7 @@ mod common;
 mod interface;
 mod layers;
 mod plain_words;
+mod repeatable;
 
 mod along_path {
     mod clear;

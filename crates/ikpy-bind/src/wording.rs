@@ -29,6 +29,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::StartVelocity => "start_qd",
         Setting::StartConfiguration => "start_q",
         Setting::IgnoreExtra => "ignore_extra=True",
+        Setting::Breaks => "breaks=True, which lets the tool leave the path there and go on",
         Setting::StartSlack => "start_slack",
         Setting::Wrap => "robot.wrap(q) takes whole turns off and brings it inside",
         Setting::Clip => "robot.clip(q) moves it to the limit, which changes the pose",

@@ -7,6 +7,7 @@ _OPTIONS = {
     "np.radians converts degrees": "90deg is 90 degrees",
     "degrees=True takes degrees": "90deg is 90 degrees",
     "budget in stop=Stop(...)": "budget (--max-evaluations)",
+    "breaks=True": "--breaks",
     "ease=True": "--ease",
     "free_start=True": "--free-start",
     "keep is held": "--tilt is held",

@@ -10,7 +10,7 @@ import numpy as np
 from .frames import Frames
 from .joints import draw_joints, draw_torques
 from .shapes import draw_from_above, draw_in_space, joints_to_tip
-from .style import BLACK, BLUE, GREEN, SKY, VERMILION
+from .style import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION
 from .tip_speed import draw_tip_speeds
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _ROWS = 4  # panels over time without torques
 _SAMPLES = 801
 _SNAPSHOTS = 6
+_BESIDE = 101  # points of the way of the tip at a break
 _FLAT = 1e-9  # m
 _FEW = 60  # a path of at most this many points gets a marker on each
 _FRAMES_A_SECOND = 15
@@ -52,6 +53,10 @@ class Scene:
             self._plot(points, color=VERMILION, linewidth=0.8, label="path to follow", **few)
         for i in range(self._tips.shape[1]):
             self._plot(self._tips[:, i], color=BLUE, label="tip" if i == 0 else None)
+        for i, each in enumerate(getattr(self._plan, "breaks", [])):
+            beside = self._plan.robot.fk(self._plan.trajectory.at(np.linspace(each.start, each.end, _BESIDE))[0])
+            style = {"color": ORANGE, "linewidth": 2.5, "linestyle": ":"}
+            self._plot(beside[:, :3, 3], label="beside the path" if i == 0 else None, **style)
         self._plot(self._tips[0], color=GREEN, marker="o", linestyle="none", label="start")
         self._plot(self._tips[-1], color=BLACK, marker="o", linestyle="none", label="end")
         self._scale()
@@ -94,7 +99,7 @@ def rows(plan: Plan) -> int:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """Draws the arm along its path (left), the search history below if there is one, joints, tip speed and torques (right)."""
+    """Draws the arm along its path and the search history, if any (left), and joints, tip speed and torques (right)."""
     halves = figure.add_gridspec(1, 2, width_ratios=[1.0, 1.15])
     left, right = (figure.add_subfigure(halves[0, i]) for i in range(2))  # each has its own margins
     grid = left.add_gridspec(_ROWS, 1)
@@ -119,6 +124,8 @@ def draw(figure: Figure, plan: Plan) -> None:
         draw_torques(panels[-1], time, plan.torques(time), plan.robot)
     for axes in panels:
         axes.set_xlim(0.0, plan.trajectory.duration)
+        for each in plan.breaks:
+            axes.axvspan(each.start, each.end, color=ORANGE, alpha=0.15, linewidth=0.0)
     panels[-1].set_xlabel("time [s]")
     panels[0].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize="small")
     figure.suptitle(fill(f"{plan.robot.name}: {plan.message}", _TITLE_WIDTH))

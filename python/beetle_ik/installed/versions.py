@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from .._core import __version__, _instructions
 
 EXTRAS = {
+    "bags": ["rosbags"],
     "cli": ["rich", "typer"],
     "distributed": ["dask", "distributed", "zarr"],
     "interop": ["pandas"],

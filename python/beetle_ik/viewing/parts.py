@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._core import InvalidInputError, Plan, SelfMotion, TrackResult
-from ..figures.style import BLACK, rgb
+from ..figures.style import BLACK, ORANGE, rgb
 from ..mapping import ReachabilityMap
 from .arm import DT
 from .camera import Camera
@@ -27,6 +27,7 @@ from .report import Report
 from .surfaces import Links
 
 if TYPE_CHECKING:
+    import viser
     from numpy.typing import NDArray
 
     from .looks import Look
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 _CELLS, _SECTIONS = "#CDD1D6", "#A9AFB6"  # colours of the floor
 _LARGE = 2.0  # m: floors of larger robots have larger cells
 _REFERENCE = 2.0  # pixels
+_BESIDE = 101  # points of a way beside the path
 _SLOW = 0.1  # s: interval of text and sliders during a motion, which the page has to lay out
 
 
@@ -46,6 +48,7 @@ class Parts:
     def __init__(self, page: Page, looks: list[Look], notes: list[str]) -> None:
         """Fills the page with the `looks` of the links and `notes`, sentences about the robot."""
         self._page = page
+        self._breaks: list[viser.SceneNodeHandle] = []
         scene, gui = page.server.scene, page.server.gui
         self._links = Links(scene, page.arm.robot, looks)
         low, high = self._links.bounds(page.arm.q)
@@ -149,6 +152,23 @@ class Parts:
         if reference is not None:
             self.draw_path(reference)
         self.playback.show(motion)
+        self._draw_breaks(result if isinstance(result, Plan) else None)
+
+    def _draw_breaks(self, plan: Plan | None) -> None:
+        """Draws the ways of the tip beside its path, each with its reason, in place of earlier ones."""
+        scene = self._page.server.scene
+        while self._breaks:
+            self._breaks.pop().remove()
+        if plan is None:
+            return
+        for i, each in enumerate(plan.breaks):
+            way = plan.robot.fk(plan.trajectory.at(np.linspace(each.start, each.end, _BESIDE))[0])[:, :3, 3]
+            segments = np.stack((way[:-1], way[1:]), axis=1)
+            name = f"/breaks/{i}"
+            color = rgb(ORANGE)
+            lines = scene.add_line_segments(name, segments, color, thickness=_REFERENCE, thickness_units="screen")
+            scene.add_label(f"{name}/reason", f"break {i}: {each.reason}", position=tuple(way[0]))
+            self._breaks.append(lines)
 
     def _show_postures(self, result: Any) -> None:
         postures = postures_of(result)

@@ -12,6 +12,7 @@ from . import (
     dead_ends,
     derivatives,
     described,
+    doors,
     dynamics,
     held_arms,
     joint_weights,
@@ -21,6 +22,7 @@ from . import (
     levels,
     motion,
     own_points,
+    path_breaks,
     paths_over,
     programs,
     readers,
@@ -59,6 +61,7 @@ _MODULES = (
     clearance,
     clear_curves,
     own_points,
+    path_breaks,
     paths_over,
     readers,
     xacro_files,
@@ -67,6 +70,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -13,6 +13,9 @@ const SAMPLES: usize = 10;
 /// Steps of that ternary search, each of which keeps two thirds of the interval.
 const STEPS: usize = 8;
 
+/// Intervals whose best sample is smaller than this fraction of the largest one are not searched: between ten samples nothing rises so far.
+const NEAR_PEAK: f64 = 0.8;
+
 /// Joint positions as a function of the path parameter.
 pub(crate) trait Configurations: Fn(f64, &mut [f64]) {}
 impl<F: Fn(f64, &mut [f64])> Configurations for F {}
@@ -77,14 +80,31 @@ impl LargestDeviation {
 impl<C: Configurations> TipDeviation<'_, C> {
     /// The largest deviations between the first and the last of `knots`.
     pub(crate) fn largest(&self, knots: &[f64]) -> LargestDeviation {
-        let distance = |fraction: f64, from: f64, to: f64| self.distance(fraction, from, to);
-        let angle = |fraction: f64, _: f64, _: f64| self.angle(fraction);
-        LargestDeviation { distance: largest_over(knots, distance), angle: largest_over(knots, angle) }
+        let samples = |ends: &[f64]| {
+            let [from, to] = [ends[0], ends[1]];
+            let none = Largest { value: -1.0, fraction: from };
+            (0..=SAMPLES).fold([none; 2], |largest, i| {
+                let fraction = from + (to - from) * i as f64 / SAMPLES as f64;
+                let parts = self.parts_between(fraction, [from, to]);
+                std::array::from_fn(|part| largest[part].or_larger(Largest { value: parts[part], fraction }))
+            })
+        };
+        let sampled: Vec<[Largest; 2]> = knots.windows(2).map(samples).collect();
+        let [distance, angle] = std::array::from_fn(|part| {
+            let most = sampled.iter().map(|largest| largest[part].value).fold(0.0, f64::max);
+            let is_near = |largest: &[Largest; 2]| most > 0.0 && largest[part].value >= NEAR_PEAK * most;
+            let near = knots.windows(2).zip(&sampled).filter(|(_, largest)| is_near(largest));
+            near.fold(sampled[0][part], |largest, (ends, best)| {
+                let ends = [ends[0], ends[1]];
+                largest.or_larger(peak(ends, best[part], |fraction| self.parts_between(fraction, ends)[part]))
+            })
+        });
+        LargestDeviation { distance, angle }
     }
 
     /// The distance (m) and the angle (rad) at a path parameter.
     pub(crate) fn parts_at(&self, fraction: f64) -> [f64; 2] {
-        [self.distance(fraction, fraction, fraction), self.angle(fraction)]
+        self.parts_between(fraction, [fraction; 2])
     }
 
     /// The larger of the two.
@@ -108,39 +128,37 @@ impl<C: Configurations> TipDeviation<'_, C> {
         distance.max(angle_between(&due.target, || self.robot.tip(q)))
     }
 
-    /// The largest [`at`](Self::at) at `samples` parameters between two path parameters.
-    pub(crate) fn between(&self, from: f64, to: f64, samples: usize) -> f64 {
+    /// The largest [`at`](Self::at) at `samples` parameters between two path parameters, each of whose configurations `visit` is told.
+    pub(crate) fn between(&self, [from, to]: [f64; 2], samples: usize, mut visit: impl FnMut(&[f64])) -> f64 {
         let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
-        let off = |fraction: f64| self.distance(fraction, from, to).max(self.angle(fraction));
+        let mut q = [0.0; MAX_DOF];
+        let q = &mut q[..self.robot.dof()];
+        let mut off = |fraction: f64| {
+            (self.configurations)(fraction, q);
+            visit(q);
+            let [distance, angle] = self.parts_of(fraction, q, [from, to]);
+            distance.max(angle)
+        };
         (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
     }
 
-    /// The distance from the part of the path around `fraction` that extends one interval before `from` and after `to`:
-    /// only the position of the tip matters, not its time. With a tolerance band, that from the point at `fraction`.
-    fn distance(&self, fraction: f64, from: f64, to: f64) -> f64 {
-        if let Some([distance, _]) = self.tip_path.path_target(fraction).excess(|| self.tip(fraction)) {
-            return distance;
-        }
+    fn parts_between(&self, fraction: f64, ends: [f64; 2]) -> [f64; 2] {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(fraction, q);
-        let length = to - from;
-        self.tip_path.distance(self.robot.tip_position(q), from - length, to + length)
+        self.parts_of(fraction, q, ends)
     }
 
-    fn angle(&self, fraction: f64) -> f64 {
-        let due = self.tip_path.path_target(fraction);
-        match due.excess(|| self.tip(fraction)) {
-            Some([_, angle]) => angle,
-            None => angle_between(&due.target, || self.tip(fraction)),
-        }
-    }
-
-    fn tip(&self, fraction: f64) -> Frame {
-        let mut q = [0.0; MAX_DOF];
-        let q = &mut q[..self.robot.dof()];
-        (self.configurations)(fraction, q);
-        self.robot.tip(q)
+    /// The distance (m) at a configuration from the part of the path around `fraction` that extends one interval before `from` and after
+    /// `to`, and the angle (rad): only the position of the tip matters, not its time. With a tolerance band, those from the point at
+    /// `fraction`.
+    fn parts_of(&self, fraction: f64, q: &[f64], [from, to]: [f64; 2]) -> [f64; 2] {
+        let (due, tip) = (self.tip_path.path_target(fraction), self.robot.tip(q));
+        due.excess(|| tip).unwrap_or_else(|| {
+            let length = to - from;
+            let distance = self.tip_path.distance(tip.origin, from - length, to + length);
+            [distance, angle_between(&due.target, || tip)]
+        })
     }
 }
 
@@ -155,20 +173,9 @@ fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
     }
 }
 
-/// The largest `value` of (fraction, from, to) over all intervals \[from, to\] between `knots`.
-fn largest_over(knots: &[f64], value: impl Fn(f64, f64, f64) -> f64) -> Largest {
-    let none = Largest { value: -1.0, fraction: 0.0 };
-    knots.windows(2).fold(none, |largest, ends| {
-        let [from, to] = [ends[0], ends[1]];
-        peak(from, to, |fraction| value(fraction, from, to)).or_larger(largest)
-    })
-}
-
-/// The largest value between two path parameters.
-fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
+/// The largest value between two path parameters, from the `best` sample there.
+fn peak([from, to]: [f64; 2], best: Largest, value: impl Fn(f64) -> f64) -> Largest {
     let step = (to - from) / SAMPLES as f64;
-    let at = |fraction: f64| Largest { value: value(fraction), fraction };
-    let best = (1..=SAMPLES).map(|i| at(from + step * i as f64)).fold(at(from), Largest::or_larger);
     let [mut lower, mut upper] = [(best.fraction - step).max(from), (best.fraction + step).min(to)];
     for _ in 0..STEPS {
         let third = (upper - lower) / 3.0;
@@ -178,7 +185,8 @@ fn peak(from: f64, to: f64, value: impl Fn(f64) -> f64) -> Largest {
             lower += third;
         }
     }
-    at(0.5 * (lower + upper)).or_larger(best)
+    let fraction = 0.5 * (lower + upper);
+    Largest { value: value(fraction), fraction }.or_larger(best)
 }
 
 #[cfg(test)]

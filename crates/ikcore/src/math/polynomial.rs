@@ -67,6 +67,12 @@ pub fn largest_magnitude(coefficients: &[f64], lower: f64, upper: f64) -> f64 {
     candidates.map(|x| evaluate(coefficients, x)[0].abs()).fold(0.0, f64::max)
 }
 
+/// Returns an upper bound of the magnitude on `[0, upper]`, without a search for the largest one.
+pub fn bound(coefficients: &[f64], upper: f64) -> f64 {
+    const ROUNDING: f64 = 1.0 + 64.0 * f64::EPSILON;
+    ROUNDING * coefficients.iter().rev().fold(0.0, |sum, c| sum * upper + c.abs())
+}
+
 /// Returns the smallest and the largest value on `[lower, upper]`.
 pub fn range(coefficients: &[f64], lower: f64, upper: f64) -> (f64, f64) {
     let candidates = stationary_points(coefficients, lower, upper).into_iter().chain([lower, upper]);

@@ -42,6 +42,8 @@ pub enum Setting {
     StartConfiguration,
     /// Values of other joints passed over.
     IgnoreExtra,
+    /// Breaks of a path, at which the tool leaves it and goes on.
+    Breaks,
     /// Distance beyond a limit in which a start is taken.
     StartSlack,
     /// Whole turns taken off, which brings a joint inside its limits.
@@ -109,6 +111,7 @@ impl fmt::Display for Setting {
             Self::StartVelocity => "start velocity",
             Self::StartConfiguration => "it instead of a target",
             Self::IgnoreExtra => "ignoring extra names",
+            Self::Breaks => "breaks, which let the tool leave the path there and go on",
             Self::StartSlack => "start slack",
             Self::Wrap => "whole turns taken off bring it inside",
             Self::Clip => "moving it to the limit changes the pose",

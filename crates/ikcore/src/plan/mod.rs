@@ -9,6 +9,7 @@
 //! | `cost` | [`Cost`]: duration, joint travel or tip travel |
 //! | `plan` | [`Plan`]: the result |
 //! | `move_report` | how each move of a program came out |
+//! | `path_break` | where the tool leaves its path |
 //! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `joined` | a plan, and motions before and after it |
 //! | `kept_along` | what holds along a finished motion |
@@ -24,6 +25,7 @@ mod endpoint;
 mod joined;
 mod kept_along;
 mod move_report;
+mod path_break;
 #[allow(clippy::module_inception)]
 mod plan;
 mod planar_arm;
@@ -44,6 +46,7 @@ pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
 pub(crate) use kept_along::broken_along;
 pub use move_report::{MoveReport, SpeedBound};
+pub use path_break::Break;
 pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};
 pub use planar_arm::{Elbow, Orientation, Orientations, PlanarArm, PlanarTarget};

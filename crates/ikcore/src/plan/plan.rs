@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::collision_checks::least_clearance;
 use super::cost::Cost;
 use super::move_report::MoveReport;
+use super::path_break::Break;
 use super::planar_arm::Orientations;
 use crate::constraint::Keep;
 use crate::error::{Error, Result};
@@ -65,6 +66,8 @@ pub struct Plan {
     pub peak: Option<Peak>,
     /// The moves of a program, in order; empty for other plans.
     pub moves: Vec<MoveReport>,
+    /// Places where the tool leaves its path; empty where it does not.
+    pub breaks: Vec<Break>,
     /// Bounds that the trajectory violates; empty for a plan that succeeded.
     pub violations: Vec<Violation>,
     /// [`Status::Solved`] for a trajectory without violations; else why the search ended.
@@ -117,7 +120,7 @@ pub struct Improvement {
 
 /// Advice where a path leads into collision.
 const ADVICE_ALONG_PATH: &str =
-    "move the path or what is in the way, lower the margin, or leave a part of the poses free by a task";
+    "move the path or what is in the way, lower the margin, leave a part of the poses free by a task";
 
 /// Number of violations that a message lists.
 const NAMED_IN_MESSAGE: usize = 3;
@@ -144,6 +147,7 @@ impl Plan {
             redundancy: vec![],
             path: vec![],
             moves: vec![],
+            breaks: vec![],
             peak: None,
             violations: vec![],
             status: Status::Solved,
@@ -195,7 +199,11 @@ impl Plan {
     /// Returns the outcome and advice, as a sentence.
     pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
-            let advice = if self.reference.is_some() { ADVICE_ALONG_PATH.into() } else { self.advice() };
+            let advice = if self.reference.is_some() {
+                message![ADVICE_ALONG_PATH, ", or ", Setting::Breaks]
+            } else {
+                self.advice()
+            };
             return match self.own_points {
                 Some(measured) => message![format!("no clear plan for {obstruction}; "), measured.advice()],
                 None => message![format!("no clear plan for {obstruction}; "), advice],
@@ -204,8 +212,9 @@ impl Plan {
         let cost = format!("{} of {} {}", self.objective.noun(), number(self.cost), self.objective.unit());
         match self.status {
             Status::Solved => format!(
-                "planned with {cost}{}{}{}{}{}",
+                "planned with {cost}{}{}{}{}{}{}",
                 self.clearance_in_words(),
+                self.breaks_in_words(),
                 self.freed_in_words(),
                 JointOutside::in_words(&self.start_outside, "begins"),
                 self.turned_in_words(),
@@ -226,6 +235,16 @@ impl Plan {
     fn clearance_in_words(&self) -> String {
         let Some(surroundings) = &self.surroundings else { return String::new() };
         clear_in_words(self.clearance.as_ref(), surroundings.first_open_mesh())
+    }
+
+    fn breaks_in_words(&self) -> String {
+        match &self.breaks[..] {
+            [] => String::new(),
+            [only] => format!("; the tool leaves the path once: {}", only.reason),
+            [first, ..] => {
+                format!("; the tool leaves the path {} times, the first time: {}", self.breaks.len(), first.reason)
+            }
+        }
     }
 
     fn freed_in_words(&self) -> String {

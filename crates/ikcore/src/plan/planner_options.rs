@@ -162,6 +162,8 @@ pub struct AlongPathOptions {
     /// Allowed distance of the tip from the path (m) and angle from its orientation (rad). `None` means the method's
     /// own.
     pub accuracy: Option<f64>,
+    /// Whether the tool may leave the path where it cannot be followed, as few times as possible, and go on.
+    pub breaks: bool,
     /// The solver of [`AlongPathMethod::Timed`]. `None` means differential evolution. [`Tpbso`] has its own.
     pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budget of the search. `None` means the method's own.

@@ -47,7 +47,8 @@ impl Plan {
         let cost = self.objective.of(robot, &trajectory);
         let slower = trajectory.duration() / self.trajectory.duration();
         let freed = self.freed.map(|freed| Freed { until: freed.until * slower, ..freed });
-        let mut retimed = Self { trajectory, cost, freed, elapsed: stopwatch.elapsed(), ..self.clone() };
+        let breaks = self.breaks.iter().map(|it| it.slower(slower)).collect();
+        let mut retimed = Self { trajectory, cost, freed, breaks, elapsed: stopwatch.elapsed(), ..self.clone() };
         retimed.certify(robot, limits.limit_jerk())?;
         retimed.certify_kept(robot)?;
         retimed.name_peak(&limits);

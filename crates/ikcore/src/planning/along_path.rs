@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::with_breaks::BrokenPath;
 use crate::along_path::timed::{PathKeeps, PathProblem};
 use crate::along_path::{TipPath, clear_path, missed_points, timed};
 use crate::error::{Error, Result};
@@ -36,15 +37,31 @@ pub fn plan_along_path(
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;
     let robot = with_tool.as_ref().unwrap_or(robot);
     let limits = ConstantLimits::for_robot(keeps.robot, options.limits.as_ref(), options.method.named())?;
-    let mut plan = match options.admitted_start(robot, &limits)? {
+    if options.breaks && matches!(options.method, AlongPathMethod::Tpbso(_)) {
+        let problem = message!["leaving the path at breaks needs ", Setting::Method("timed")];
+        return Err(Error::Contradiction { problem });
+    }
+    let planned = match options.admitted_start(robot, &limits)? {
         None => plan_admitted(robot, &tip_path, keeps, options, monitor),
         Some(start) => plan_from(robot, &tip_path, keeps, (start, &limits), options, monitor),
-    }?;
+    };
+    let mut plan = match options.breaks && is_lost(&planned) {
+        true => BrokenPath { robot, tip_path: &tip_path, keeps, options }.plan(monitor)?.map_or(planned, Ok)?,
+        false => planned?,
+    };
     if plan.note_kept(keeps.robot, keeps.keeps)?.is_some() && plan.status == Status::Solved {
         plan.status = Status::Stalled;
     }
     plan.name_peak(&limits);
     Ok(plan)
+}
+
+/// Whether no motion was found that follows the whole path.
+fn is_lost(planned: &Result<Plan>) -> bool {
+    match planned {
+        Ok(plan) => !plan.violations.is_empty() && plan.status != Status::Interrupted && plan.start_outside.is_empty(),
+        Err(error) => matches!(error, Error::NotFound { .. } | Error::Unreachable { .. }),
+    }
 }
 
 /// Plans from a start that the gate has taken. Where no motion leads its joints inside at once, they may stay outside, but go no farther

@@ -18,19 +18,21 @@
 //! |---|---|
 //! | `point_to_point`, `along_path` | the two calls |
 //! | `admitted_ends` | start and ends of a motion as the caller reads them |
+//! | `with_breaks` | along a path that the tool leaves where it must |
 //! | `several_tips` | point to point for several tips: targets become configurations |
 
 mod admitted_ends;
 mod along_path;
 mod point_to_point;
 mod several_tips;
+mod with_breaks;
 
 pub use crate::along_path::TipPath;
 pub use crate::moves::{JointGoal, Move, MoveKind, MovesOptions, plan_moves};
 pub use crate::plan::{
-    AlongPathMethod, AlongPathOptions, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact,
-    LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod,
-    PointToPointOptions, SpeedBound, StraightLine, Tpbso,
+    AlongPathMethod, AlongPathOptions, Break, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned,
+    LineContact, LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget,
+    PointToPointMethod, PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{
     ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,

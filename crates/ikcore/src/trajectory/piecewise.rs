@@ -7,7 +7,7 @@ use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::interrupt::checkpoint_at;
 use crate::math::Knots;
-use crate::math::polynomial::{Short, derivative, evaluate, largest_magnitude, range, value};
+use crate::math::polynomial::{Short, bound, derivative, evaluate, largest_magnitude, range, value};
 use crate::math::ticks::ticks;
 
 /// Largest jump of a joint at a knot (rad or m, relative beyond 1); stored or computed coefficients meet only up to
@@ -237,8 +237,12 @@ impl Trajectory {
         let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); self.joints.len()];
         for segment in 0..self.knots.segments() {
             for ((lowest, highest), position) in ranges.iter_mut().zip(self.segment(segment)) {
-                let (low, high) = range(position, 0.0, self.knots.span(segment));
-                (*lowest, *highest) = (lowest.min(low), highest.max(high));
+                let span = self.knots.span(segment);
+                let moved = span * bound(&position[1..], span);
+                if position[0] - moved < *lowest || position[0] + moved > *highest {
+                    let (low, high) = range(position, 0.0, span);
+                    (*lowest, *highest) = (lowest.min(low), highest.max(high));
+                }
             }
         }
         ranges
@@ -267,8 +271,10 @@ impl Trajectory {
                 break; // the interrupted caller discards the result
             }
             for (largest, position) in largest.iter_mut().zip(self.segment(segment)) {
-                let in_segment = largest_magnitude(&quantity(position), 0.0, self.knots.span(segment));
-                *largest = largest.max(in_segment);
+                let (values, span) = (quantity(position), self.knots.span(segment));
+                if bound(&values, span) > *largest {
+                    *largest = largest.max(largest_magnitude(&values, 0.0, span));
+                }
             }
         }
         largest

@@ -49,6 +49,9 @@ use crate::wording::said;
 ///         thousandth of the path's extent,
 ///         plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
 ///         has tolerances, the accuracy is part of them and must not exceed the smallest.
+///     breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
+///         as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
+///         go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
 ///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
 ///         solver of its own.
 ///     stop: budgets; None: the method's own.
@@ -62,7 +65,7 @@ use crate::wording::said;
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
-///         a robot without bodies, or a start_q at which `keep` does not hold.
+///         a robot without bodies, `breaks` with "tpbso", no way beside the path at a break, or a start_q at which `keep` does not hold.
 ///     LimitError: limits that contradict each other; a start farther outside them than start_slack.
 ///     UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
 ///         (`Plan.retime` adds them).
@@ -76,10 +79,10 @@ use crate::wording::said;
 ///     True
 #[pyfunction]
 #[pyo3(signature = (robot, path, *, start_q=None, start_slack=None, task=None, keep=None, limits=None, method=None, objective="time", obstacles=None,
-                    margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, progress=None),
+                    margin=None, self_collision=None, accuracy=None, breaks=false, solver=None, stop=None, seed=0, progress=None),
        text_signature = "(robot, path, *, start_q=None, start_slack=None, task=None, keep=None, limits=None, method='timed', objective='time', \
-                         obstacles=None, margin=None, self_collision=None, accuracy=None, solver=None, stop=None, seed=0, \
-                         progress=None)")]
+                         obstacles=None, margin=None, self_collision=None, accuracy=None, breaks=False, solver=None, stop=None, \
+                         seed=0, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_along_path(
     py: Python<'_>,
@@ -96,6 +99,7 @@ pub fn plan_along_path(
     margin: Option<f64>,
     self_collision: Option<bool>,
     accuracy: Option<f64>,
+    breaks: bool,
     solver: Option<&Bound<'_, PyAny>>,
     stop: Option<&PyStop>,
     seed: i128,
@@ -118,6 +122,7 @@ pub fn plan_along_path(
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         limits: resolved,
         accuracy,
+        breaks,
         solver: solver.map(|solver| derivative_free_solver("plan_along_path", solver)).transpose()?,
         stop: stop.map(PyStop::core),
         seed: count("seed", seed)?,

@@ -5,6 +5,7 @@ mod batch_plan;
 mod endpoints;
 mod move_report;
 mod moves;
+mod path_break;
 mod plan;
 mod plan_arguments;
 mod plan_moves;
@@ -24,6 +25,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     moves::register(module)?;
     module.add_class::<move_report::PyMoveReport>()?;
     module.add_class::<move_report::PySpeedBound>()?;
+    module.add_class::<path_break::PyBreak>()?;
     module.add_function(wrap_pyfunction!(plan_moves::plan_moves, module)?)?;
     module.add_function(wrap_pyfunction!(point_to_point::plan_point_to_point, module)?)?;
     module.add_class::<batch_plan::PyBatchPlan>()?;

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::move_report::PyMoveReport;
+use super::path_break::PyBreak;
 use super::violation::PyViolation;
 use crate::convert::{row, table};
 use crate::error::raise;
@@ -160,6 +161,12 @@ impl PyPlan {
     #[getter]
     fn moves(&self) -> Vec<PyMoveReport> {
         self.core.moves.iter().cloned().map(PyMoveReport).collect()
+    }
+
+    /// Places where the tool leaves its path, with `breaks=True`, a list of `Break` in order; empty where it does not.
+    #[getter]
+    fn breaks(&self) -> Vec<PyBreak> {
+        self.core.breaks.iter().cloned().map(PyBreak).collect()
     }
 
     /// Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what

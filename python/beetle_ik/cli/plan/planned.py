@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, Limits, MoveReport, Plan, Robot, Stop, plot
+from ... import Break, InvalidInputError, Limits, MoveReport, Plan, Robot, Stop, plot
 from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
@@ -109,6 +109,7 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
         "tilt": plan.kept[0][1][-1] if plan.kept else math.nan,
         "violations": [str(violation) for violation in plan.violations],
         "moves": [_move(move) for move in plan.moves],
+        "breaks": [_break(each) for each in plan.breaks],
         "largest_velocity": plan.trajectory.max_velocity(),
         "largest_acceleration": plan.trajectory.max_acceleration(),
         "evaluations": plan.evaluations,
@@ -119,6 +120,10 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
 def _move(move: MoveReport) -> dict[str, Any]:
     bound_by = [{key: getattr(bound, key) for key in ("limit", "of", "start", "end")} for bound in move.bound_by]
     return {"name": move.name, "start": move.start, "end": move.end, "speed": move.speed, "bound_by": bound_by}
+
+
+def _break(each: Break) -> dict[str, Any]:
+    return {key: getattr(each, key) for key in ("at", "until", "reason", "start", "end")}
 
 
 def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
@@ -132,6 +137,9 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
     for i, move in enumerate(plan.moves):
         named = f"move {i}" if move.name is None else f"move {i} '{move.name}'"
         rows.append((named, f"{move.start:.3f} to {move.end:.3f} s, up to {move.speed:.4g} m/s"))
+    for i, each in enumerate(plan.breaks):
+        place = f"{each.at:.4g}" if each.at == each.until else f"{each.at:.4g} to {each.until:.4g}"
+        rows.append((f"break {i}", f"at {place}, {each.start:.3f} to {each.end:.3f} s: {each.reason}"))
     rows += [("violation", violation) for violation in summary["violations"]]
     rows += [("evaluations", str(plan.evaluations)), ("time [ms]", f"{1e3 * plan.elapsed:.3g}")]
     print_pairs(f"{plan.robot.name}: {summary['message']}", rows)

@@ -2,33 +2,24 @@
 
 use super::dead_end::Layers;
 use super::passage::Passage;
-use super::postures::{LayerSampling, postures};
+use super::path_end::why_it_ends;
+use super::postures::{DENSITIES, LayerSampling, clear_layers, intervals, postures};
 use super::price::Price;
 use super::sequence::{FoundSequence, LayerPosture, Unreached, cheapest};
 use super::smoothing::Smoothing;
+use super::stretches::Stretch;
 use crate::along_path::missed_points::{missed_at, missed_points};
 use crate::along_path::timed::{
     FollowedPath, Interpolation, JointWaypoints, NullSpaceOffsets, PathProblem, TimedCost, search,
 };
-use crate::along_path::tip_path::TipPath;
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint;
 use crate::math::vector::squared_distance;
+use crate::message::{Setting, message};
 use crate::objective::Point;
 use crate::obstacle::{ClearSpace, ClearanceSweep, TooNear};
 use crate::plan::{Plan, SearchResult, certify, configuration_at, least_clearance, refuse_collision, too_near};
 use crate::solver::{Monitor, Status, Stop};
-
-/// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
-const SPACING: f64 = 0.03;
-const INTERVALS: [f64; 2] = [50.0, 400.0];
-
-/// Number of segments from which on a path gets layers at its points alone: it is straight between them, unlike the
-/// curve that they sample.
-const SEGMENTS: usize = 25;
-
-/// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
-const DENSITIES: [usize; 2] = [32, 128];
 
 /// Maximum number of motions tried, each with more clearance where the one before came too near.
 const ROUNDS: usize = 10;
@@ -49,7 +40,7 @@ const AROUND: f64 = 1.5;
 const SPARE: f64 = 2e-5;
 
 /// Advice where no motion is found.
-const ADVICE: &str = "try another seed, wider limits, or leave a part of the poses free by a task";
+const ADVICE: &str = "try another seed, wider limits, leave a part of the poses free by a task";
 
 /// Penalty of a posture in collision per metre of its shortfall from the margin.
 const DEEP: f64 = 1e6;
@@ -66,15 +57,7 @@ pub(crate) fn along_path(
     if let (Some(q), Some(space)) = (&problem.options.start, space) {
         refuse_collision("start", space, q)?;
     }
-    let mut planner = ClearPlanner {
-        problem,
-        space,
-        price: Price::new(problem),
-        passage: Passage::new(problem, space),
-        fractions: problem.tip_path.knots(intervals(problem.tip_path)),
-        postures: vec![],
-        accuracy: problem.accuracy,
-    };
+    let mut planner = ClearPlanner::new(problem, space, problem.tip_path.knots(intervals(problem.tip_path)));
     match (planner.first_sequence()?, space) {
         (Ok(sequence), _) => planner.certified(sequence, monitor),
         (Err(dead_end), Some(space)) => planner.least_deep(space, dead_end),
@@ -82,11 +65,19 @@ pub(crate) fn along_path(
     }
 }
 
-/// Returns the number of intervals between layers.
-fn intervals(tip_path: &TipPath) -> usize {
-    let wanted = (tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize;
-    let segments = tip_path.positions().len() - 1;
-    if segments < SEGMENTS { wanted } else { wanted.min(segments) }
+/// Plans along a path that the arm can follow through a `stretch` of postures.
+///
+/// # Errors
+/// As [`plan_along_path`](crate::planning::plan_along_path).
+pub(crate) fn along_stretch(
+    problem: &PathProblem<'_>,
+    space: Option<&ClearSpace<'_>>,
+    stretch: Stretch,
+    monitor: &mut dyn Monitor,
+) -> Result<Plan> {
+    let mut planner = ClearPlanner::new(problem, space, stretch.fractions);
+    planner.postures = stretch.postures;
+    planner.certified(stretch.sequence, monitor)
 }
 
 struct ClearPlanner<'p> {
@@ -110,10 +101,22 @@ enum Fault {
     OffPath,
 }
 
-impl ClearPlanner<'_> {
+impl<'p> ClearPlanner<'p> {
+    fn new(problem: &'p PathProblem<'p>, space: Option<&'p ClearSpace<'p>>, fractions: Vec<f64>) -> Self {
+        Self {
+            problem,
+            space,
+            price: Price::new(problem),
+            passage: Passage::new(problem, space),
+            fractions,
+            postures: vec![],
+            accuracy: problem.accuracy,
+        }
+    }
+
     /// Returns the cheapest clear sequence, from as few postures as suffice.
     fn first_sequence(&mut self) -> Result<FoundSequence> {
-        let mut dead_end = Unreached(0);
+        let mut dead_end = Unreached { layer: 0, last: None };
         for density in DENSITIES {
             let sampling = LayerSampling { fractions: &self.fractions, density };
             self.postures = postures(&mut self.passage, &self.price, &sampling)?;
@@ -126,12 +129,7 @@ impl ClearPlanner<'_> {
     }
 
     fn clear_sequence(&mut self) -> Result<FoundSequence> {
-        let clear = |(fraction, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
-            checkpoint()?;
-            let clear = postures.iter().filter(|q| self.passage.is_clear(*fraction, q));
-            Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
-        };
-        let layers = self.fractions.iter().zip(&self.postures).map(clear).collect::<Result<Vec<_>>>()?;
+        let layers = clear_layers(&self.passage, &self.fractions, &self.postures)?;
         cheapest(&layers, &self.fractions, &self.price, &mut self.passage)
     }
 
@@ -249,7 +247,7 @@ impl ClearPlanner<'_> {
     /// Returns the plan that penetrates least, where there is no clear one.
     fn least_deep(mut self, space: &ClearSpace<'_>, dead_end: Unreached) -> Result<Plan> {
         let layers = Layers { fractions: &self.fractions, postures: &self.postures };
-        let (obstruction, own_points) = layers.obstruction(&self.passage, space, dead_end);
+        let (obstruction, own_points) = layers.obstruction(&self.passage, space, &dead_end);
         let missing = |q: &Point| (space.margin() - space.clearance(q).distance).max(0.0);
         let candidates = |postures: &Vec<Point>| -> Result<Vec<LayerPosture>> {
             checkpoint()?;
@@ -273,7 +271,7 @@ impl ClearPlanner<'_> {
     }
 
     /// The error where no sequence follows the path, clear or not.
-    fn not_found(&self, Unreached(layer): Unreached) -> Result<Error> {
+    fn not_found(&mut self, Unreached { layer, last }: Unreached) -> Result<Error> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         if self.postures[layer].is_empty()
             && let Some(error) = missed_at(robot, tip_path, self.fractions[layer], options.seed)?
@@ -294,7 +292,14 @@ impl ClearPlanner<'_> {
                 format!("all {count} configurations tried there are on other branches than those before")
             }
         };
-        Ok(Error::NotFound { what: format!("a motion past {place}"), problem: format!("{problem}; {ADVICE}").into() })
+        let cause = last.map_or_else(String::new, |(q, swept)| {
+            let from = (self.fractions[layer - 1], &q[..]);
+            let turns = self.problem.options.start.is_none().then_some(swept);
+            let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[layer], turns);
+            format!("; on the way there, {why}")
+        });
+        let problem = message![format!("{problem}{cause}; {ADVICE}, or "), Setting::Breaks];
+        Ok(Error::NotFound { what: format!("a motion past {place}"), problem })
     }
 
     /// The error that breaks what is to be kept at the first posture of a layer, if it is broken at all of them.

@@ -19,17 +19,17 @@ impl Layers<'_> {
         &self,
         passage: &Passage<'_>,
         space: &ClearSpace<'_>,
-        dead_end: Unreached,
+        dead_end: &Unreached,
     ) -> (String, Option<Sensed>) {
         let is_blocked = |i: &usize| !self.postures[*i].iter().any(|q| passage.is_clear(self.fractions[*i], q));
         match (0..self.fractions.len()).find(is_blocked) {
             Some(layer) => self.blocked(passage, space, layer),
             None => {
-                let place = passage.problem.tip_path.point_in_words(self.fractions[dead_end.0]);
-                let count = self.clear(passage, dead_end.0);
+                let place = passage.problem.tip_path.point_in_words(self.fractions[dead_end.layer]);
+                let count = self.clear(passage, dead_end.layer);
                 let what = format!(
                     "{place}: {count} of {} postures tried there are clear, but no clear motion that was found leads to them",
-                    self.postures[dead_end.0].len()
+                    self.postures[dead_end.layer].len()
                 );
                 (what, None)
             }

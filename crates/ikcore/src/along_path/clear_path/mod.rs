@@ -14,13 +14,18 @@
 //! | `sequence` | the cheapest sequence through the layers |
 //! | `smoothing` | shorter steps, by postures between |
 //! | `dead_end` | why there is no clear motion |
+//! | `path_end` | why the arm cannot follow a path any farther |
+//! | `stretches` | the fewest stretches of a path that the arm follows without leaving it |
 
 mod clear_planner;
 mod dead_end;
 mod passage;
+mod path_end;
 mod postures;
 mod price;
 mod sequence;
 mod smoothing;
+mod stretches;
 
-pub(crate) use clear_planner::along_path;
+pub(crate) use clear_planner::{along_path, along_stretch};
+pub(crate) use stretches::{Stretch, Stretches, stretches};

@@ -79,18 +79,37 @@ impl<'a> Passage<'a> {
     /// Shifts each joint of a sequence by whole turns into its limits; false if one winds too far.
     pub fn shift_inside(&self, sequence: &mut [Point]) -> bool {
         (0..self.problem.robot.dof()).all(|j| {
-            let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
             let values = || sequence.iter().map(|q| q[j]);
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            let fits = |shift: f64| lower <= low + shift && high + shift <= upper;
-            if fits(0.0) {
-                return true;
-            }
-            let Some(period) = self.problem.robot.turn_period(j) else { return false };
-            let shift = ((0.5 * (lower + upper - low - high)) / period).round() * period;
-            sequence.iter_mut().for_each(|q| q[j] += shift);
-            fits(shift)
+            let shift = self.shift(j, low, high);
+            sequence.iter_mut().for_each(|q| q[j] += shift.unwrap_or(0.0));
+            shift.is_some()
         })
+    }
+
+    /// Whether whole turns bring each joint inside its limits, with these smallest and largest values on its way.
+    pub fn fits(&self, [low, high]: &[Point; 2]) -> bool {
+        (0..low.len()).all(|j| self.shift(j, low[j], high[j]).is_some())
+    }
+
+    /// Whole turns of a joint (rad) that bring what it sweeps inside its limits; `None` if there are none.
+    pub fn shift(&self, j: usize, low: f64, high: f64) -> Option<f64> {
+        let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
+        if lower <= low && high <= upper {
+            return Some(0.0);
+        }
+        let period = self.problem.robot.turn_period(j)?;
+        let shift = ((0.5 * (lower + upper - low - high)) / period).round() * period;
+        (lower <= low + shift && high + shift <= upper).then_some(shift)
+    }
+
+    /// Returns the posture on the path nearest to `guess` without regard to limits, if there is one.
+    pub fn beyond_limits(&mut self, fraction: f64, guess: &[f64]) -> Option<Point> {
+        let everywhere = (0..guess.len()).map(|_| (f64::NEG_INFINITY, f64::INFINITY));
+        let bounds = std::mem::replace(&mut self.projection.bounds, Bounds::from_ranges(everywhere));
+        let found = self.on_path(fraction, guess);
+        self.projection.bounds = bounds;
+        found
     }
 
     /// Distance kept beyond the margin at a path parameter (m).

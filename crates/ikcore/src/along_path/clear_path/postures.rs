@@ -2,7 +2,9 @@
 
 use super::passage::Passage;
 use super::price::Price;
+use super::sequence::LayerPosture;
 use crate::along_path::timed::PathProblem;
+use crate::along_path::tip_path::TipPath;
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, solve_all};
 use crate::interrupt::checkpoint;
@@ -10,6 +12,17 @@ use crate::objective::Point;
 use crate::rng;
 use crate::solver::Unattended;
 use crate::task::Target;
+
+/// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
+const SPACING: f64 = 0.03;
+const INTERVALS: [f64; 2] = [50.0, 400.0];
+
+/// Number of segments from which on a path gets layers at its points alone: it is straight between them, unlike the
+/// curve that they sample.
+const SEGMENTS: usize = 25;
+
+/// Postures of a layer, as in [`LayerSampling::density`]: more where fewer do not suffice.
+pub(super) const DENSITIES: [usize; 2] = [32, 128];
 
 /// Starts tried for each motion along the path.
 const TRIES: usize = 4;
@@ -21,6 +34,27 @@ pub(super) struct LayerSampling<'a> {
     pub fractions: &'a [f64],
     /// Values of the parameter of a redundant arm with a closed form, or a quarter of the motions from random starts.
     pub density: usize,
+}
+
+/// Returns the number of intervals between layers.
+pub(super) fn intervals(tip_path: &TipPath) -> usize {
+    let wanted = (tip_path.length() / SPACING).clamp(INTERVALS[0], INTERVALS[1]) as usize;
+    let segments = tip_path.positions().len() - 1;
+    if segments < SEGMENTS { wanted } else { wanted.min(segments) }
+}
+
+/// The clear postures of each layer.
+pub(super) fn clear_layers(
+    passage: &Passage<'_>,
+    fractions: &[f64],
+    postures: &[Vec<Point>],
+) -> Result<Vec<Vec<LayerPosture>>> {
+    let clear = |(fraction, postures): (&f64, &Vec<Point>)| -> Result<Vec<LayerPosture>> {
+        checkpoint()?;
+        let clear = postures.iter().filter(|q| passage.is_clear(*fraction, q));
+        Ok(clear.map(|q| LayerPosture { q: q.clone(), penalty: 0.0 }).collect())
+    };
+    fractions.iter().zip(postures).map(clear).collect()
 }
 
 /// Returns the postures of each layer, clear or not.

@@ -41,6 +41,16 @@ impl Price {
         self.of_differences((0..from.len()).map(|j| self.turned(j, to[j] - from[j])), fraction)
     }
 
+    /// The cost of a motion beside the path modulo whole turns, as if it took as long as the whole path.
+    pub fn of_way(&self, from: &[f64], to: &[f64]) -> f64 {
+        let moved = |j: usize| self.turned(j, to[j] - from[j]).abs();
+        let part = |j: usize| match self.objective {
+            Cost::JointTravel => moved(j),
+            _ => (moved(j) / self.pace[j]).powi(2),
+        };
+        (0..from.len()).map(part).sum()
+    }
+
     /// Returns `to`, shifted by whole turns to be near `from`.
     pub fn turned_near(&self, from: &[f64], to: &[f64]) -> Point {
         (0..from.len()).map(|j| from[j] + self.turned(j, to[j] - from[j])).collect()

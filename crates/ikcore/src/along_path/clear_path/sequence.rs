@@ -21,16 +21,43 @@ pub(super) struct LayerPosture {
 }
 
 /// A posture that a sequence has reached.
-struct Reached {
-    q: Point,
+pub(super) struct Reached {
+    pub q: Point,
     cost: f64,
     /// Index of its predecessor in the layer before.
     before: usize,
+    /// Smallest and largest value of each joint on the sequence.
+    swept: Swept,
+}
+
+/// Smallest and largest value of each joint on a motion.
+pub(super) type Swept = [Point; 2];
+
+impl Reached {
+    /// The first posture of a sequence.
+    fn first(candidate: &LayerPosture) -> Self {
+        let LayerPosture { q, penalty } = candidate;
+        Self { q: q.clone(), cost: *penalty, before: 0, swept: [q.clone(), q.clone()] }
+    }
+
+    /// The values that each joint takes on the sequence to here, and on to `q`.
+    fn swept_on_to(&self, q: &[f64]) -> Swept {
+        swept_on_to(&self.swept, q)
+    }
+}
+
+/// What the joints sweep on a motion that goes on to `q`.
+pub(super) fn swept_on_to([low, high]: &Swept, q: &[f64]) -> Swept {
+    [low.iter().zip(q).map(|(a, b)| a.min(*b)).collect(), high.iter().zip(q).map(|(a, b)| a.max(*b)).collect()]
 }
 
 /// The layer that no sequence reaches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Unreached(pub usize);
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Unreached {
+    pub layer: usize,
+    /// The posture of the layer before that the cheapest sequence ends at, and what its joints sweep.
+    pub last: Option<(Point, Swept)>,
+}
 
 /// A sequence, or the layer at which it breaks off.
 pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
@@ -50,28 +77,43 @@ pub(super) fn cheapest(
         passage.open_turns();
         let reached = reached(layers, fractions, price, passage);
         passage.close_turns();
-        let reached = match reached? {
-            Ok(reached) => reached,
-            Err(unreached) => return Ok(Err(unreached)),
-        };
+        let reached = reached?;
+        if let Some(unreached) = unreached(layers, &reached) {
+            return Ok(Err(unreached));
+        }
         let mut ends = ends_by_cost(&reached).map(|end| traced(&reached, end));
         if let Some(sequence) = ends.find_map(|mut sequence| passage.shift_inside(&mut sequence).then_some(sequence)) {
             return Ok(Ok(sequence));
         }
     }
     let reached = reached(layers, fractions, price, passage)?;
-    Ok(reached.map(|reached| ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
+    Ok(unreached(layers, &reached)
+        .map_or_else(|| Ok(ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))), Err))
 }
 
-/// Returns the postures that sequences reach, layer by layer.
-fn reached(
+/// The first layer that no sequence reaches, if there is one.
+fn unreached(layers: &[Vec<LayerPosture>], reached: &[Vec<Reached>]) -> Option<Unreached> {
+    let layer = reached.len();
+    (layer < layers.len()).then(|| {
+        let last = ends_by_cost(reached).next().map(|end| {
+            let Reached { q, swept, .. } = &reached[layer - 1][end];
+            (q.clone(), swept.clone())
+        });
+        Unreached { layer, last }
+    })
+}
+
+/// Returns the postures that sequences reach, layer by layer, up to the last layer that one reaches.
+pub(super) fn reached(
     layers: &[Vec<LayerPosture>],
     fractions: &[f64],
     price: &Price,
     passage: &mut Passage<'_>,
-) -> Result<std::result::Result<Vec<Vec<Reached>>, Unreached>> {
-    let first = |candidate: &LayerPosture| Reached { q: candidate.q.clone(), cost: candidate.penalty, before: 0 };
-    let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(first).collect()];
+) -> Result<Vec<Vec<Reached>>> {
+    let mut reached: Vec<Vec<Reached>> = vec![layers[0].iter().map(Reached::first).collect()];
+    if layers[0].is_empty() {
+        return Ok(vec![]);
+    }
     for i in 1..layers.len() {
         checkpoint()?;
         let before = &reached[i - 1];
@@ -82,11 +124,11 @@ fn reached(
             step.beside_candidates(before, &mut next);
         }
         if next.is_empty() {
-            return Ok(Err(Unreached(if before.is_empty() { i - 1 } else { i })));
+            break;
         }
         reached.push(next);
     }
-    Ok(Ok(reached))
+    Ok(reached)
 }
 
 /// Steps from one layer to the next.
@@ -111,8 +153,10 @@ impl Step<'_, '_> {
             }
             let begin = &before[nearest].q;
             let end = self.price.turned_near(begin, &candidate.q);
-            if self.passage.is_within_limits(&end) && self.passage.leads((from, begin), (to, &end)) {
-                return Some(Reached { q: end, cost: self.costs[nearest] + candidate.penalty, before: nearest });
+            let swept = before[nearest].swept_on_to(&end);
+            let fits = self.passage.is_within_limits(&end) && self.passage.fits(&swept);
+            if fits && self.passage.leads((from, begin), (to, &end)) {
+                return Some(Reached { q: end, cost: self.costs[nearest] + candidate.penalty, before: nearest, swept });
             }
             self.costs[nearest] = f64::INFINITY;
         }
@@ -132,8 +176,10 @@ impl Step<'_, '_> {
             let near_path = self.passage.clear_near_path(to, &reached.q);
             for q in [on_path, near_path].into_iter().flatten() {
                 let cost = reached.cost + self.price.of_step(&reached.q, &q, to - from);
-                if cost.is_finite() && self.passage.leads((from, &reached.q), (to, &q)) {
-                    next.push(Reached { q, cost, before: number });
+                let swept = reached.swept_on_to(&q);
+                let goes_on = cost.is_finite() && self.passage.fits(&swept);
+                if goes_on && self.passage.leads((from, &reached.q), (to, &q)) {
+                    next.push(Reached { q, cost, before: number, swept });
                     break;
                 }
             }
@@ -141,8 +187,8 @@ impl Step<'_, '_> {
     }
 }
 
-/// Returns the postures of the last layer, cheapest first.
-fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
+/// Returns the indices of the postures of the last layer, cheapest first.
+pub(super) fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
     let last = reached.last().map_or(&[][..], |last| last);
     let mut ends: Vec<usize> = (0..last.len()).collect();
     ends.sort_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost));
@@ -150,7 +196,7 @@ fn ends_by_cost(reached: &[Vec<Reached>]) -> impl Iterator<Item = usize> {
 }
 
 /// Traces the sequence that leads to a posture of the last layer.
-fn traced(reached: &[Vec<Reached>], mut at: usize) -> Vec<Point> {
+pub(super) fn traced(reached: &[Vec<Reached>], mut at: usize) -> Vec<Point> {
     let mut postures: Vec<Point> = reached
         .iter()
         .rev()

@@ -78,6 +78,9 @@ const SAMPLES: usize = 7;
 /// Largest excess of a joint over its limits in an interval that is not halved (rad, m), as a fraction of the accuracy.
 const SWING: f64 = 0.05;
 
+/// Number of intervals beside a new knot in which the spline changes: in each by about a quarter of what it does in the one before.
+const FELT: usize = 4;
+
 /// Maximum number of halvings of an interval: to 1/4096 of its length.
 const HALVINGS: usize = 12;
 
@@ -139,17 +142,20 @@ impl Interpolation<'_> {
     /// None in practice, as for [`path`](Self::path).
     pub(super) fn refined(&self, mut waypoints: JointWaypoints) -> Result<JointWaypoints> {
         let accuracy = self.accuracy;
+        let mut settled = vec![false; waypoints.knots.len() - 1];
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
             let deviation = deviation_on(self.robot, self.tip_path, &path);
             let is_coarse = |i: usize| {
                 checkpoint_at(i)?;
-                let [from, to] = [waypoints.knots[i], waypoints.knots[i + 1]];
+                let ends = [waypoints.knots[i], waypoints.knots[i + 1]];
+                let mut swing: f64 = 0.0;
+                let off = deviation.between(ends, SAMPLES, |q| swing = swing.max(self.excess(q)));
                 // A given start may be off the path.
-                let is_off = deviation.between(from, to, SAMPLES) > ENOUGH * accuracy + deviation.at(from);
-                Ok((is_off || self.swing(&path, from, to) > SWING * accuracy).then_some(i))
+                let is_off = off > ENOUGH * accuracy && off > ENOUGH * accuracy + deviation.at(ends[0]);
+                Ok((is_off || swing > SWING * accuracy).then_some(i))
             };
-            let intervals = 0..waypoints.knots.len() - 1;
+            let intervals = (0..settled.len()).filter(|i| !settled[*i]);
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
@@ -158,6 +164,7 @@ impl Interpolation<'_> {
             if finer.knots.len() == waypoints.knots.len() {
                 break;
             }
+            settled = settled_after(&waypoints.knots, &finer.knots, &coarse);
             waypoints = finer;
         }
         Ok(waypoints)
@@ -172,17 +179,10 @@ impl Interpolation<'_> {
         met.all(|is_met| is_met).then_some(waypoints)
     }
 
-    /// Largest excess of a joint over its limits between two knots (rad, m).
-    fn swing(&self, path: &JointPath, from: f64, to: f64) -> f64 {
-        let mut q = [0.0; MAX_DOF];
-        let q = &mut q[..self.robot.dof()];
-        let mut most: f64 = 0.0;
-        for sample in 1..=SAMPLES {
-            path.position(from + (to - from) * sample as f64 / (SAMPLES + 1) as f64, q);
-            let beyond = |(joint, q): (&Joint, &f64)| (joint.lower - q).max(q - joint.upper);
-            most = self.robot.joints().iter().zip(&*q).map(beyond).fold(most, f64::max);
-        }
-        most
+    /// Largest excess of a joint over its limits (rad, m).
+    fn excess(&self, q: &[f64]) -> f64 {
+        let beyond = |(joint, q): (&Joint, &f64)| (joint.lower - q).max(q - joint.upper);
+        self.robot.joints().iter().zip(q).map(beyond).fold(0.0, f64::max)
     }
 
     /// Scales all positions of a joint that swings out of its limits into them.
@@ -238,4 +238,22 @@ impl Interpolation<'_> {
         }
         finer
     }
+}
+
+/// Which intervals between `finer` knots are fine enough: those that were not `coarse`, with no new knot near.
+fn settled_after(knots: &[f64], finer: &[f64], coarse: &[usize]) -> Vec<bool> {
+    let (mut settled, mut added) = (Vec::with_capacity(finer.len() - 1), vec![]);
+    for i in 0..knots.len() - 1 {
+        let begin = settled.len();
+        settled.push(coarse.binary_search(&i).is_err());
+        if finer[begin + 1] < knots[i + 1] {
+            settled.push(false);
+            added.push(begin + 1);
+        }
+    }
+    for knot in added {
+        let last = (knot + FELT).min(settled.len());
+        settled[knot.saturating_sub(FELT)..last].fill(false);
+    }
+    settled
 }

@@ -275,18 +275,45 @@ impl TipPath {
     pub(super) fn resampled(&self, fractions: Vec<f64>, place: impl Fn(f64) -> Option<PathPlace>) -> Self {
         let place = |at: &f64| place(*at).unwrap_or_else(|| (self.position(*at), self.rotation(*at)));
         let (positions, rotations): (Vec<_>, Vec<_>) = fractions.iter().map(place).unzip();
-        let time = |times: &Vec<f64>, at: f64| {
-            let (row, part) = self.locate(at);
-            between(times[row], times[row + 1], part)
-        };
         Self {
-            times: self.times.as_ref().map(|times| fractions.iter().map(|at| time(times, *at)).collect()),
+            times: fractions.iter().map(|at| self.time(*at)).collect(),
             rotations: rotations.into_iter().collect(),
             positions,
             fractions,
             corners: vec![],
             ..self.clone()
         }
+    }
+
+    /// The part of the curve between two path parameters, with the same task and tolerance.
+    ///
+    /// # Errors
+    /// [`Error::InvalidPath`] for a part without length.
+    pub(crate) fn part(&self, from: f64, to: f64) -> Result<Self> {
+        let inside = self.fractions.iter().copied().filter(|at| from < *at && *at < to);
+        let places: Vec<f64> = std::iter::once(from).chain(inside).chain([to]).collect();
+        let rotation = |at: &f64| self.rotation(*at).map(|it| it.to_rotation_matrix().into_inner());
+        let positions = places.iter().map(|at| self.position(*at)).collect();
+        let waypoints = Waypoints::new(positions, places.iter().map(rotation).collect())?;
+        let times: Option<Vec<f64>> = places.iter().map(|at| self.time(*at)).collect();
+        let part = Self::from_rows(&waypoints, &(0..places.len()).collect::<Vec<_>>(), times.as_deref())?;
+        Ok(Self { task: self.task, tolerance_band: self.tolerance_band, ..part })
+    }
+
+    /// The time (s) at a path parameter of a path in time.
+    fn time(&self, fraction: f64) -> Option<f64> {
+        let (row, part) = self.locate(fraction);
+        self.times.as_ref().map(|times| between(times[row], times[row + 1], part))
+    }
+
+    /// The place at a path parameter as the caller counts: the number of a point, with the part of the way to the next one, or the time of
+    /// a path in time (s).
+    pub(crate) fn place(&self, fraction: f64) -> f64 {
+        self.time(fraction).unwrap_or_else(|| {
+            let points = &self.point_fractions;
+            let row = points.partition_point(|start| *start <= fraction).clamp(1, points.len() - 1) - 1;
+            row as f64 + ((fraction - points[row]) / (points[row + 1] - points[row])).clamp(0.0, 1.0)
+        })
     }
 
     /// The distance (m) of a position from the part of the curve between two path parameters.
@@ -299,11 +326,8 @@ impl TipPath {
     /// The point at this path parameter, in words for messages.
     pub fn point_in_words(&self, fraction: f64) -> String {
         let (row, part) = self.locate(fraction);
-        match &self.times {
-            Some(times) => {
-                let time = between(times[row], times[row + 1], part);
-                format!("the path at t = {} s", number(time))
-            }
+        match self.time(fraction) {
+            Some(time) => format!("the path at t = {} s", number(time)),
             None if part == 0.0 => format!("point {row} of the path"),
             None if part == 1.0 => format!("point {} of the path", row + 1),
             None => format!("the path between points {row} and {}", row + 1),
