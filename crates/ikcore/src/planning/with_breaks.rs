@@ -1,13 +1,15 @@
 //! Planning along a path that the tool leaves where it must: it draws back, goes another way, comes near again and goes on.
 
+use crate::along_path::TipPath;
 use crate::along_path::clear_path::{Stretch, Stretches, along_stretch, stretches};
 use crate::along_path::timed::{PathKeeps, PathProblem};
-use crate::along_path::TipPath;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
 use crate::math::vector::largest_difference;
 use crate::obstacle::{ClearSpace, Clearance};
-use crate::plan::{AlongPathOptions, Break, Cost, EndTurns, Endpoint, LineFrame, Plan, PointToPointOptions, StraightLine};
+use crate::plan::{
+    AlongPathOptions, Break, Cost, EndTurns, Endpoint, LineFrame, Plan, PointToPointOptions, StraightLine,
+};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::trajectory::Trajectory;
@@ -37,7 +39,11 @@ pub(super) struct BrokenPath<'a> {
 enum Piece {
     Along(Box<Plan>),
     /// Beside the path, from one path parameter to another; no way where the path begins later or ends sooner.
-    Beside { way: Option<Box<Plan>>, places: [f64; 2], reason: String },
+    Beside {
+        way: Option<Box<Plan>>,
+        places: [f64; 2],
+        reason: String,
+    },
 }
 
 impl BrokenPath<'_> {
@@ -136,10 +142,11 @@ impl BrokenPath<'_> {
                 limits: self.options.limits.clone(),
                 end_turns: EndTurns::AsGiven,
                 objective: self.options.objective,
-                stop: self.options.stop.and_then(|stop| stop.max_time).map(|time| Stop {
-                    max_time: Some(time),
-                    ..Stop::default()
-                }),
+                stop: self
+                    .options
+                    .stop
+                    .and_then(|stop| stop.max_time)
+                    .map(|time| Stop { max_time: Some(time), ..Stop::default() }),
                 seed: self.options.seed,
                 ..PointToPointOptions::default()
             };
