@@ -285,10 +285,6 @@ def test_a_mimic_joint_is_reflected_to_its_master() -> None:
             "1.000e0 kg m^2: none can be negative",
         ),
         (
-            INERTIAL.format(mass=0, matrix=ROUND),
-            "URDF line 4: <inertial> of link 'rod': the mass is 0, but the inertia matrix is not",
-        ),
-        (
             INERTIAL.format(mass="heavy", matrix=ROUND),
             "URDF line 4: value of <mass> in <inertial> of link 'rod' must be a number, got 'heavy'",
         ),
@@ -480,3 +476,11 @@ def test_unknown_links_are_named_with_the_nearest() -> None:
     with pytest.raises(bik.InvalidInputError, match="with_payload takes robots with one tip"):
         pair.with_payload(1.0)
     assert pair.with_payload(1.0, link="left_tool").payloads[0].mass == 1.0
+
+
+def test_a_matrix_without_a_mass_turns_as_in_pinocchio() -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    rod = INERTIAL.format(mass=0, matrix='ixx="0.1" iyy="0.2" izz="0.15"')
+    model = pinocchio.buildModelFromXML(PENDULUM.format(rod=rod, swing=""))
+    expected = pinocchio.rnea(model, model.createData(), np.array([0.4]), np.array([1.0]), np.array([2.0]))
+    np.testing.assert_allclose(pendulum(rod).torques([0.4], [1.0], [2.0]), expected, atol=1e-12)
