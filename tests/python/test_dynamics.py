@@ -351,7 +351,7 @@ def test_a_joint_without_mass_beyond_it_is_named() -> None:
 
 def test_a_singular_mass_matrix_is_told() -> None:
     # A point on the second axis: that joint moves nothing.
-    robot = bik.Robot.planar([0.5, 0.4]).with_inertias({"link_2": bik.Inertia("link_2", 1.0, (-0.4, 0.0, 0.0))})
+    robot = bik.Robot.planar([0.5, 0.4]).with_inertias({"link_2": bik.Inertia("link_2", 1.0)})
     assert robot.has_dynamics
     with pytest.raises(bik.InvalidInputError) as told:
         robot.accelerations([[0.0, 1.0]], [[0.0, 0.0]], [[1.0, 1.0]])
@@ -480,7 +480,12 @@ def test_unknown_links_are_named_with_the_nearest() -> None:
 
 def test_a_matrix_without_a_mass_turns_as_in_pinocchio() -> None:
     pinocchio = pytest.importorskip("pinocchio")
-    rod = INERTIAL.format(mass=0, matrix='ixx="0.1" iyy="0.2" izz="0.15"')
-    model = pinocchio.buildModelFromXML(PENDULUM.format(rod=rod, swing=""))
-    expected = pinocchio.rnea(model, model.createData(), np.array([0.4]), np.array([1.0]), np.array([2.0]))
-    np.testing.assert_allclose(pendulum(rod).torques([0.4], [1.0], [2.0]), expected, atol=1e-12)
+    pad = INERTIAL.format(mass=0, matrix='ixx="0.1" iyy="0.2" izz="0.15" ixy="0" ixz="0" iyz="0"')
+    fixed = '<joint name="f" type="fixed"> <parent link="rod"/> <child link="pad"/> <origin rpy="0.3 0.2 0"/> </joint>'
+    xml = PENDULUM.format(rod=BOB, swing="").replace("</robot>", f'<link name="pad">{pad}</link> {fixed} </robot>')
+    model = pinocchio.buildModelFromXML(xml)
+    q = np.array([np.cos(0.4), np.sin(0.4)])
+    expected = pinocchio.rnea(model, model.createData(), q, np.array([1.0]), np.array([2.0]))
+    robot = bik.Robot.from_urdf(xml)
+    np.testing.assert_allclose(robot.torques([0.4], [1.0], [2.0]), expected, atol=1e-12)
+    assert abs(robot.mass_matrix([0.4]) - pendulum().mass_matrix([0.4])).max() > 0.1

@@ -19,7 +19,6 @@ IMPOSSIBLE = {
     "alex_psyonic_hands": "LeftPsyonicAbilityBaseLink",
     "allegro_left_hand": "link_11.0",
     "allegro_right_hand": "link_3.0",
-    "bolt": "FL_FOOT",
     "hyq_no_sensors": "lf_foot",
     "pr2": "sensor_mount_link",
     "romeo_laas_small": "LShoulderYaw_link",
