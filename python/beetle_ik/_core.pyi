@@ -778,6 +778,9 @@ class Limits:
     def jerk(self) -> _LimitOut:
         """Jerk limits (rad/s^3, m/s^3), as given."""
     @property
+    def torque(self) -> float | _Array | None:
+        """Limits of the torques of the joints (N m, N), as given."""
+    @property
     def tip_speed(self) -> float | dict[str, float] | None:
         """Limits of the speed of tips (m/s), as given."""
     @property
