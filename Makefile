@@ -5,7 +5,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo campaign soak test-sdist release-check test-aarch64 miri audit lint lint-rust lint-python \
+.PHONY: help demo test test-rust test-python zoo campaign property-tests soak derivatives dds-peer test-sdist release-check test-aarch64 miri audit \
+    lint lint-rust lint-python \
     bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
@@ -19,16 +20,20 @@ demo: $(VENV)/with-cli,plot  ## a KUKA iiwa 14 follows the BAS paper's circle; r
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
 	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
 
-# Two halves side by side: compiling keeps one core busy for long. Each line prints its output when it ends.
+# Two jobs at a time: compiling keeps one core busy for long. Each line prints its output when it ends.
 test:  ## all checks and tests, of Rust and of Python
 	$(MAKE) $(MAKEOVERRIDES) --no-print-directory --jobs=2 $(if $(filter output-sync,$(.FEATURES)),--output-sync=line) test-rust test-python
 
 test-rust: lint-rust
 	cargo test --locked
 
-test-python: lint-python
+# The parts take about the same time: two cores share them with the tests of Rust, whichever ends first.
+test-python: lint-python $(addprefix test-python-,$(PARTS))
 	$(BIN)/python -m mypy.stubtest beetle_ik._core
-	$(BIN)/python -m pytest
+
+PARTS  := a-d e-l m-p q-z
+test-python-%: $(VENV)/with-test
+	$(BIN)/python -m pytest tests/python/test_[$*]*.py
 
 zoo: $(VENV)/with-zoo  ## every robot of the package example-robot-data: loads, stands as in Pinocchio, reaches its targets
 	$(BIN)/python -m pytest tests/zoo
@@ -38,8 +43,21 @@ campaign: $(VENV)/with-test  ## attacks on every promise: SEED=, and CASES= of e
 	PYTHONPATH=tests $(BIN)/python -m campaign run --seed $(or $(SEED),0) --workers $(or $(WORKERS),2) --out target/campaign \
 	    $(if $(CASES),--cases $(CASES)) $(if $(MINUTES),--minutes $(MINUTES),$(if $(CASES),,--minutes 10))
 
+property-tests:  ## the drawn tests of the core with cases of their own in every run: SEED=, and CASES= of each (default: 4096)
+	PROPTEST_RNG_SEED=$(or $(SEED),$(shell date +%s)) PROPTEST_CASES=$(or $(CASES),4096) cargo test --locked --lib --test core
+
 soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
 	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
+# JAX takes 400 MB, PyTorch up to 6 GB where its wheel brings CUDA.
+derivatives: $(VENV)/with-test  ## the tests of interop.jax and interop.torch, with both libraries
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[jax,torch]"
+	$(BIN)/python -m pytest tests/python/test_door_jax.py tests/python/test_door_torch.py tests/python/test_examples.py
+
+# Its crates are no part of the workspace, nor of its lock.
+dds-peer: $(VENV)/with-test  ## `beetle-ik ros` against RustDDS: 1,000 trajectories, restarts, damaged messages
+	cargo build --release --manifest-path tests/dds_peer/Cargo.toml --target-dir target/dds_peer
+	$(BIN)/python tests/dds_peer/exchange.py target/dds_peer/release/dds_peer
 
 # What pip does where it finds no wheel; then the package of the core, as crates.io would build it.
 test-sdist: $(BIN)/maturin  ## the source distribution and the crates build and pass their tests where nothing else is
@@ -107,7 +125,7 @@ bench: $(BIN)/maturin  ## criterion benchmarks of the core, then the comparison 
 
 # `cargo install cargo-tarpaulin --locked` installs the coverage tool for Rust.
 coverage: $(VENV)/with-test  ## lines that the tests reach, of Rust and of Python
-	cargo tarpaulin --locked -p ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 3600 \
+	PROPTEST_RNG_SEED=1 cargo tarpaulin --locked -p ikcore --engine llvm --skip-clean --target-dir target/coverage --timeout 3600 \
 	    --exclude-files 'tests/*' 'benches/*' 'examples/*'
 	$(BIN)/pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
 	$(BIN)/python -m pytest --cov=beetle_ik --cov-report=term-missing:skip-covered

@@ -1,9 +1,6 @@
-"""Robot, configuration and pose from the parameters and messages of both nodes."""
+"""Robot and limits from the parameters of both nodes."""
 
-import numpy as np
-from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
-from sensor_msgs.msg import JointState
 
 import beetle_ik as bik
 
@@ -35,34 +32,6 @@ def limits_of(node: Node) -> bik.Limits:
     )
 
 
-def configuration(robot: bik.Robot, message: JointState) -> np.ndarray | None:
-    """Returns the configuration (n,) in the order of the robot.
-
-    None if a joint is missing, as in the message of a gripper.
-    """
-    position = dict(zip(message.name, message.position, strict=False))
-    if not all(name in position for name in robot.joint_names):
-        return None
-    return np.array([position[name] for name in robot.joint_names])
-
-
-def pose_of(message: PoseStamped) -> np.ndarray:
-    """The pose (4, 4) of the message."""
-    position, turn = message.pose.position, message.pose.orientation
-    return bik.pose(
-        [position.x, position.y, position.z], xyzw=[turn.x, turn.y, turn.z, turn.w]
-    )
-
-
-def refusal(robot: bik.Robot, message: PoseStamped) -> str | None:
-    """Returns why the pose cannot be used; None if it can.
-
-    Transform poses of other frames with tf2 before you send them.
-    """
-    base = robot.link_names[0]
-    if message.header.frame_id not in ("", base):
-        return (
-            f"the pose is given in frame '{message.header.frame_id}', "
-            f"and this node takes those in '{base}'"
-        )
-    return None
+def say_by(node: Node):
+    """Logs lines of the shared logic by the node's logger."""
+    return lambda level, text: getattr(node.get_logger(), level)(text)

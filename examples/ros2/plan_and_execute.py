@@ -1,8 +1,11 @@
-"""Plans to each pose that arrives; a joint_trajectory_controller executes it."""
+"""Plans to each pose that arrives; a joint_trajectory_controller executes it.
+
+The logic is that of `beetle-ik ros`; this file connects it to rclpy.
+"""
 
 import rclpy
 from action_msgs.msg import GoalStatus
-from arm import configuration, limits_of, pose_of, refusal, robot_of
+from arm import limits_of, robot_of, say_by
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
 from geometry_msgs.msg import PoseStamped
@@ -11,56 +14,54 @@ from rclpy.node import Node
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from visualization_msgs.msg import MarkerArray
 
 import beetle_ik as bik
+from beetle_ik.interop.ros.planner import Planner
+from beetle_ik.interop.ros.reading import States
+from beetle_ik.interop.ros.servo import answered
 
 
-class Planner(Node):
+class PlannerNode(Node):
     """One motion at a time: a goal that arrives during a motion is refused."""
 
     def __init__(self) -> None:
         """Finds the arm and the controller."""
         super().__init__("beetle_planner")
-        self.robot = robot_of(self)
-        self.limits = limits_of(self)
-        self.q = None
+        robot, self.say = robot_of(self), say_by(self)
+        self.states, self.planner = States(robot), Planner(robot, limits_of(self))
         self.busy = False
         action = self.declare_parameter(
             "action", "joint_trajectory_controller/follow_joint_trajectory"
         ).value
         self.client = ActionClient(self, FollowJointTrajectory, action)
-        self.create_subscription(JointState, "joint_states", self.on_state, 1)
-        self.create_subscription(PoseStamped, "~/goal", self.on_goal, 1)
+        for kind, topic, handle in (
+            (JointState, "joint_states", self.states.read),
+            (MarkerArray, "~/obstacles", self.planner.markers),
+            (PoseStamped, "~/goal", self.on_goal),
+        ):
+            self.hear(kind, topic, handle)
 
-    def on_state(self, message: JointState) -> None:
-        """Keeps where the arm is."""
-        q = configuration(self.robot, message)
-        self.q = self.q if q is None else q
+    def hear(self, kind, topic, handle) -> None:
+        """Subscribes; a message that cannot be used is answered by a log line."""
+        self.create_subscription(
+            kind, topic, lambda given: answered(self.say, topic, handle, given), 1
+        )
 
     def on_goal(self, message: PoseStamped) -> None:
         """Plans from rest where the arm is, and sends the motion."""
-        problem = self.obstacle_to(message)
+        problem = self.obstacle_to()
         if problem:
-            self.get_logger().error(problem)
-            return
-        try:
-            plan = bik.plan_point_to_point(
-                self.robot, start_q=self.q, end=pose_of(message), limits=self.limits
-            )
-        except bik.BeetleIkError as refused:
-            self.get_logger().error(str(refused))
-            return
+            raise bik.InvalidInputError(problem)
+        plan = self.planner.plan(self.states.require(), message)
         if not plan.success:
-            self.get_logger().error(plan.message)
-            return
+            raise bik.InvalidInputError(plan.message)
         self.busy = True
         goal = FollowJointTrajectory.Goal(trajectory=message_of(plan.trajectory))
         self.client.send_goal_async(goal).add_done_callback(self.on_answer)
 
-    def obstacle_to(self, message: PoseStamped) -> str | None:
+    def obstacle_to(self) -> str | None:
         """Why no motion can begin now."""
-        if self.q is None:
-            return "no joint states have arrived yet"
         if self.busy:
             return "a motion is under way: send the goal when it has ended"
         if not self.client.server_is_ready():
@@ -68,7 +69,7 @@ class Planner(Node):
                 "the controller's action server is not there: "
                 "is the controller active?"
             )
-        return refusal(self.robot, message)
+        return None
 
     def on_answer(self, future: Future) -> None:
         """Waits for the result of an accepted motion."""
@@ -109,7 +110,7 @@ def main() -> None:
     """Runs the node until Ctrl-C."""
     rclpy.init()
     try:
-        rclpy.spin(Planner())
+        rclpy.spin(PlannerNode())
     except KeyboardInterrupt:
         pass
     finally:

@@ -15,7 +15,7 @@ from . import _core
 from .calls.arguments import require
 from .calls.text import counted
 from .figures import calibration_figure, plan_figure, track_figure
-from .figures.joints import ROW_HEIGHT, draw_joints, legend_columns
+from .figures.joints import ROW_HEIGHT, draw_joints, draw_torques, legend_columns
 from .figures.shapes import draw_bodies, draw_in_space, joints_to_tip, link_poses, moved, placed_bodies
 from .figures.style import BLUE, FORBIDDEN, GREEN, LINKS, ORANGE, VERMILION, new_figure, style
 from .figures.surface import Surface, draw_surfaces
@@ -129,10 +129,13 @@ def model_free(result: ModelFreeResult) -> Figure:
 
 
 def plan(plan: Plan) -> Figure:
-    """Draws a planned motion: the arm along its path, the search history, joints and speeds of the tip over time."""
+    """Draws a planned motion: the arm along its path, the search history, joints and speeds of the tip over time.
+
+    The torques of the joints are below, with their limits, if the robot has dynamics.
+    """
     require("plan", plan, _core.Plan)
     with style():
-        figure = new_figure(13.0, plan_figure.ROWS * ROW_HEIGHT * 0.9 + 0.4)
+        figure = new_figure(13.0, plan_figure.rows(plan) * ROW_HEIGHT * 0.9 + 0.4)
         plan_figure.draw(figure, plan)
     return figure
 
@@ -145,18 +148,28 @@ def animation(result: Plan | TrackResult) -> FuncAnimation:
         return plan_figure.animate(figure, result).animation(figure)
 
 
-def trajectory(trajectory: Trajectory) -> Figure:
-    """Draws position, velocity and, unless the segments are straight, acceleration of each joint over time."""
+def trajectory(trajectory: Trajectory, *, robot: Robot | None = None) -> Figure:
+    """Draws position, velocity and, unless the segments are straight, acceleration of each joint over time.
+
+    With a `robot` the torques that cause the motion are below, with their limits.
+    """
     require("trajectory", trajectory, _core.Trajectory)
     curved = trajectory.coefficients.shape[2] > 2
     labels = ["position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]"][: 3 if curved else 2]
     time = np.linspace(trajectory.time[0], trajectory.time[-1], _TRAJECTORY_SAMPLES)
+    torques = None
+    if robot is not None:
+        require("robot", robot, _core.Robot)
+        torques = trajectory.torques(robot, time)
     with style():
-        figure = new_figure(9.0, ROW_HEIGHT * len(labels) + 0.6)
-        panels = figure.subplots(len(labels), 1, sharex=True)
+        rows = len(labels) + (torques is not None)
+        figure = new_figure(9.0, ROW_HEIGHT * rows + 0.6)
+        panels = figure.subplots(rows, 1, sharex=True)
         for axes, label, values in zip(panels, labels, trajectory.at(time), strict=False):
             draw_joints(axes, time, values, trajectory.joint_names)
             axes.set_ylabel(label)
+        if robot is not None and torques is not None:
+            draw_torques(panels[-1], time, torques, robot)
         panels[-1].set_xlabel("time [s]")
         columns = legend_columns(trajectory.joint_names)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper", ncols=columns)

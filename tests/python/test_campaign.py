@@ -24,7 +24,7 @@ CASES = {
     "dead_ends": 6,
     "clear_plans": 2,
     "held_arms": 6,
-    "two_arm_plans": 4,
+    "two_arm_plans": 2,
     "time_optimal": 3,
     "out_of_reach": 6,
     "self_motions": 3,
@@ -62,6 +62,12 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
 SPOILED = {
+    "calls_in_degrees": (
+        "found[:-1] *= 0.99",
+        "position_error is not the error",
+    ),
+    "led_by_twists": ("q[-1] = q[-1] + 0.01", "the velocity is beyond its limit"),
+    "torques": ("torques = torques + 1e-3", "torques differ"),
     "joint_weights": ("solution = Changed(solution, q=solution.q + 0.02)", "solved, but not within the tolerance"),
     "best_kept": ("solution = Changed(solution, evaluations=10**6)", "the budget is exceeded"),
     "command_line": ("done = Changed(done, exit_code=3)", "the status is none of 0, 1, 2"),
@@ -80,6 +86,7 @@ SPOILED = {
         "a tick exceeds the velocity limit on the way inside",
     ),
     "plants": ("found = Changed(found, q=10.0 * found.q)", "the velocity is beyond its limit"),
+    "followed_targets": ("ways = 1.001 * ways", "it is not the pseudoinverse"),
     "poses": (
         "poses = poses + 1e-9",
         "pose differs",

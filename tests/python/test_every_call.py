@@ -52,7 +52,7 @@ WORDS = {
     "waypoints_q": "waypoints?",
     "start_speed": "speed at the start",
     "end_speed": "speed at the end",
-    "qd": "velocity samples",
+    "qd": "velocity samples|velocities",
     "qdd": "accelerations",
     "measured": "measurements?|pose \\d+",
     "sigma": "standard deviation",
@@ -76,6 +76,10 @@ QUICK = {"stop": bik.Stop(max_evaluations=100)}
 PLACED = {"center": (0, 0, 0), "duration": 1.0}
 TICKS = {"start": START, "dt": 0.1}
 PLAN = bik.plan_point_to_point(PLANAR, start_q=[0, 0, 0], end_q=[0.1, 0.1, 0.1], limits=LIMITS)
+WEIGHTED = bik.Robot.named("panda")
+WEIGHED_PLAN = bik.plan_point_to_point(
+    WEIGHTED, start_q=[0, -0.5, 0, -2.0, 0, 1.5, 0.8], end_q=[0.1, -0.5, 0, -2.0, 0, 1.5, 0.8], limits=LIMITS
+)
 TRACK = bik.track(ARM, LINE, START, dt=0.1)
 MODEL_FREE = bik.track_model_free(bik.KinematicPlant(ARM), LINE, START, dt=0.1)
 ASKED, IDLE = (bik.papers.ZNNBAS().session(**TICKS) for _ in range(2))
@@ -130,6 +134,16 @@ NEEDED: dict[str, dict[str, Any]] = {
     "Robot.with_capsules": {"radius": 0.05},
     "Robot.with_collision_pairs": {"pairs": []},
     "Robot.with_held": {"hold": {}},
+    "Robot.with_gravity": {"gravity": (0, 0, -9.81)},
+    "Robot.with_inertias": {"inertias": []},
+    "Robot.with_payload": {"mass": 1.0},
+    "Robot.accelerations": {".": WEIGHTED, "q": START, "qd": START, "torques": START},
+    "Robot.torques": {".": WEIGHTED},
+    "Robot.mass_matrix": {".": WEIGHTED},
+    "Robot.center_of_mass": {".": WEIGHTED},
+    "Inertia": {"link": "hand", "mass": 1.0},
+    "Plan.torques": {".": WEIGHED_PLAN, "t": 0.0},
+    "Trajectory.torques": {".": WEIGHED_PLAN.trajectory, "robot": WEIGHTED, "t": 0.0},
     "Robot.with_mobile_base": {"kind": "planar", "lower": [-1, -1, -3], "upper": [1, 1, 3]},
     "Robot.with_srdf": {"path_or_xml": "<robot/>"},
     "Robot.with_tool": {"tool": np.eye(4)},

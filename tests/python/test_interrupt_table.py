@@ -26,6 +26,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer sends 
 ENDLESS = bik.Stop(max_evaluations=10**12, max_iterations=10**12)
 CAPSULES = IIWA.with_capsules(radius=0.05)
 UR5 = bik.Robot.named("ur5")
+PANDA = bik.Robot.named("panda")
 PLANAR = bik.Robot.planar([0.5] * 3)
 INSIDE_SHOULDER = [0.0, 0.0, 0.36]
 FAST = bik.Limits(velocity=1.0, acceleration=5.0)
@@ -72,6 +73,11 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "Robot.clip": lambda: with_rows(IIWA.clip, 4_000_000),
         "Robot.wrap": lambda: with_rows(IIWA.wrap, 2_000_000),
         "Robot.jacobian": lambda: with_rows(IIWA.jacobian, 800_000),
+        "Robot.torques": lambda: with_rows(PANDA.torques, 400_000),
+        "Robot.mass_matrix": lambda: with_rows(PANDA.mass_matrix, 200_000),
+        "Robot.accelerations": lambda: with_rows(lambda q: PANDA.accelerations(q, q, q), 100_000),
+        "Robot.center_of_mass": lambda: with_rows(PANDA.center_of_mass, 400_000),
+        "Trajectory.torques": lambda: torques_of_waves(),
         "Robot.manipulability": lambda: with_rows(IIWA.manipulability, 1_000_000),
         "Robot.random_configurations": lambda: lambda: IIWA.random_configurations(10_000_000),
         "Robot.collision_meshes": lambda: with_mesh(300_000),
@@ -98,8 +104,8 @@ def table() -> dict[str, Callable[[], Callable[[], object]]]:
         "obstacles.Grid": lambda: occupied(300),
         "obstacles.Mesh": lambda: soup(1_000_000),
         "obstacles.PointCloud": lambda: cloud(3_000_000),
-        "obstacles.PointCloud.without_robot": lambda: without_robot(cloud(1_000_000)()),
-        "obstacles.Grid.without_robot": lambda: without_robot(occupied(200)()),
+        "obstacles.PointCloud.without_robot": lambda: without_robot(cloud(400_000)()),
+        "obstacles.Grid.without_robot": lambda: without_robot(occupied(120)()),
         "obstacles.clearance": lambda: with_rows(lambda q: bik.obstacles.clearance(CAPSULES, q), 400_000),
         "paths.from_samples": lambda: posed(500_000),
         "plan_along_path": lambda: lambda: bik.plan_along_path(IIWA, CIRCLE, limits=FAST, stop=ENDLESS),
@@ -245,6 +251,12 @@ def posed_query(count: int) -> Callable[[], object]:
     return lambda: found.query(poses)
 
 
+def torques_of_waves() -> Callable[[], object]:
+    arm = bik.Robot.planar([0.5, 0.4])
+    heavy = arm.with_inertias([bik.Inertia(link, 1.0, (-0.1, 0, 0)) for link in arm.link_names[1:]])
+    return with_times(lambda t: waves(1000)().torques(heavy, t), 1_000_000)
+
+
 def waypoints(count: int) -> Callable[[], object]:
     q = np.cumsum(np.random.default_rng(0).standard_normal((count, 12)), axis=0)
     return lambda: bik.time_optimal(q, FAST)
@@ -269,7 +281,7 @@ SHORT: dict[str, str] = {
             "paths.hypotrochoid", "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box",
             "obstacles.Capsule", "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid",
             "obstacles.HalfSpace", "obstacles.Moving", "obstacles.Sphere",
-            "filters.LowPass", "filters.OneEuro", "StraightLine", "Keep", "upright", "moves.Arc",
+            "Inertia", "filters.LowPass", "filters.OneEuro", "StraightLine", "Keep", "upright", "moves.Arc",
             "moves.Joints", "moves.Line", "moves.Wait",
         ],
         CONSTANT,
@@ -282,6 +294,7 @@ SHORT: dict[str, str] = {
             "Robot.link_manipulability", "Robot.velocity_ellipsoid", "Tracker", "Tracker.reset", "Tracker.stop", "pose",
             "state_to_state", "obstacles.nearest", "Robot.all_link_poses", "Robot.q_from", "Robot.with_held",
             "Robot.with_attached",
+            "Robot.with_gravity", "Robot.with_inertias", "Robot.with_payload",
             "Robot.with_collision_pairs", "Robot.with_mobile_base", "Robot.with_srdf",
         ],
         ONE,
@@ -294,6 +307,7 @@ SHORT: dict[str, str] = {
         "Python and numpy, which the interpreter interrupts",
     ),
     "Plan.retime": PLANNED,
+    "Plan.torques": "as Trajectory.torques",
     "Calibration.to_urdf": "reads a text once, as from_urdf",
     **dict.fromkeys(["Viewer.close", "Viewer.on_target", "Viewer.show", "Viewer.to_python"], "hands over to a thread"),
     **dict.fromkeys(

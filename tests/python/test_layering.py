@@ -1,4 +1,4 @@
-"""Imports between modules, the modules that `import beetle_ik` loads, and clocks, which no test reads."""
+"""Imports between modules, the modules that `import beetle_ik` loads; no test has a clock or draws without a seed."""
 
 import ast
 import subprocess
@@ -11,7 +11,9 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "python" / "beetle_ik"
 FILES = sorted(PACKAGE.rglob("*.py"))
 TESTS = sorted(Path(__file__).parent.glob("*.py"))
+ATTACKS = sorted(Path(__file__).parents[1].joinpath("campaign", "attacks").rglob("*.py"))
 CLOCKS = {"datetime", "time", "timeit"}
+UNSEEDED = {"random", "secrets", "uuid"}
 
 # From the lowest up; `__init__` stands for the public names of the package.
 LAYERS = (
@@ -71,3 +73,11 @@ def test_no_test_reads_a_clock_or_sleeps(file: Path) -> None:
     assert not libraries(nodes) & CLOCKS
     called = {node.func.attr for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)}
     assert not called & {"wait_for_timeout"}
+
+
+@pytest.mark.parametrize("file", [*TESTS, *ATTACKS], ids=lambda file: file.stem)
+def test_drawn_cases_come_from_a_seed(file: Path) -> None:
+    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+    assert not libraries(nodes) & UNSEEDED
+    calls = [node for node in nodes if isinstance(node, ast.Call) and not node.args]
+    assert not [call.lineno for call in calls if ast.unparse(call.func).endswith("default_rng")]

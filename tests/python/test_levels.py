@@ -54,7 +54,7 @@ def test_each_level_is_as_near_as_scipy_finds(seed: int) -> None:
     check(levels, found.q, list(PAIR.random_configurations(4, seed=seed)))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_feet_then_hands_then_gaze(seed: int) -> None:
     targets = far(BODY, seed, 0.15)
     targets["left_foot"] = BODY.fk(BODY.random_configurations(1, seed=seed)[0])[0]

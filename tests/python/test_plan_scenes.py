@@ -18,9 +18,8 @@ COUNT = 50
 CAUGHT = (340, 404, 1100, 1422)  # once hit by planners that certified too little
 
 
-@pytest.mark.parametrize("first", [0, 50, 100, 150])
-def test_what_is_called_clear_in_random_scenes_is_clear(first: int) -> None:
-    outcome = random_scenes.run([*range(first, first + COUNT), *CAUGHT])
+def test_what_is_called_clear_in_random_scenes_is_clear() -> None:
+    outcome = random_scenes.run([*range(COUNT), *CAUGHT])
     assert outcome.wrong == []
     assert outcome.scenes == COUNT + len(CAUGHT)
     assert outcome.solved > COUNT // 2

@@ -82,6 +82,7 @@ CIRCLE = bik.paths.circle(center=(0.4, 0.0, 0.5), diameter=0.1, duration=1.0)
 MOTION = bik.Trajectory.from_samples([0.0, 1.0], np.array([Q, Q + 0.1]))
 PLAN = bik.plan_point_to_point(PANDA, start_q=Q, end_q=Q + 0.1, limits=RATED)
 
+NO_MASS = "robot 'ur5e' has no dynamics: no link has a mass: give them by robot.with_inertias({link: Inertia(link, mass, center, matrix)})"
 NO_CAPSULES = (
     'has no capsules, so that nothing is known of the room it takes up: load its URDF with collision="fit", or give it '
     "capsules with with_capsules(radius=...) along its links or with_capsules([(link, a, b, radius), ...])"
@@ -169,6 +170,16 @@ ROWS: list[Row] = [
     ("Robot.wrap", Limit, lambda at: PANDA.wrap([0.0, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0]), "q: joint 'panda_joint4' at 0.5 is outside its limits [-3.0718, -0.0698] by 0.5698 rad: no whole turn brings it inside, the nearest is 0.5698 rad beyond; robot.clip(q) moves it to the limit, which changes the pose"),
     ("Robot.q_from", Unknown, lambda at: UR5.q_from({"elbow": 1.0}), f"robot 'ur5e' has no joint 'elbow' in q (did you mean 'elbow_joint'?); its joints: {', '.join(UR5.joint_names)}; ignore_extra=True leaves out values of other joints"),
     ("Robot.q_from", Invalid, lambda at: UR5.q_from(UR5.joint_names, [0.0]), "values: expected shape (6,) or (m, 6), one per name, got (1,)"),
+    ("Inertia", Invalid, lambda at: api.Inertia("hand", -1.0), "inertia of link 'hand': the mass is -1 kg: it cannot be negative"),
+    ("Robot.with_inertias", Unknown, lambda at: PANDA.with_inertias([api.Inertia("hnd", 1.0)]), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
+    ("Robot.with_payload", Unknown, lambda at: PANDA.with_payload(1.0, link="hnd"), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
+    ("Robot.with_payload", Invalid, lambda at: PANDA.with_payload(-1.0), "payload: the mass is -1 kg: it cannot be negative"),
+    ("Robot.torques", Invalid, lambda at: UR5.torques(UR5_Q), NO_MASS),
+    ("Robot.mass_matrix", Invalid, lambda at: UR5.mass_matrix(UR5_Q), NO_MASS),
+    ("Robot.accelerations", Invalid, lambda at: UR5.accelerations(UR5_Q, UR5_Q, UR5_Q), NO_MASS),
+    ("Robot.center_of_mass", Invalid, lambda at: UR5.center_of_mass(UR5_Q), NO_MASS),
+    ("Trajectory.torques", Invalid, lambda at: MOTION.torques(UR5, 0.5), "robot 'ur5e' has 6 joints, and the trajectory 7 joints"),
+    ("Plan.torques", Invalid, lambda at: bik.plan_point_to_point(UR5, start_q=UR5_Q, end_q=UR5_Q + 0.1, limits=RATED).torques(0.1), NO_MASS),
     ("Robot.with_held", Unknown, lambda at: HELD.with_held({"finger_joint1": 0.0}), "robot 'held' holds no joint 'finger_joint1'; joints that it holds: side"),
     ("Robot.with_held", Limit, lambda at: HELD.with_held({"side": 2.0}), "hold: joint 'side' at 2 is outside its limits [-1, 1] by 1.000 rad: move it inside"),
     ("Robot.with_attached", Unknown, lambda at: PANDA.with_attached("hnd", BALL), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange"),
@@ -198,6 +209,13 @@ ROWS: list[Row] = [
     ("interop.from_pinocchio", Invalid, lambda at: api.interop.from_pinocchio(at.needs("pinocchio").value(1)), 'model must be a Model, got 1'),
     ("interop.from_roboticstoolbox", Invalid, lambda at: api.interop.from_roboticstoolbox(at.needs("roboticstoolbox").value("puma")), "expected a robot or an ETS of the Robotics Toolbox, got 'puma'"),
     ("interop.to_dataframe", Missing, lambda at: api.interop.to_dataframe(at.without("pandas").value(MOTION)), 'a table needs pandas: pip install pandas'),
+    ("interop.to_lerobot", Invalid, lambda at: api.interop.to_lerobot(MOTION, fps=0, task="wave"), 'fps must be positive, got 0'),
+    ("interop.to_lerobot", Invalid, lambda at: api.interop.to_lerobot(MOTION, fps=30, task="wave", joint_names=["a"]), 'joint_names: expected 7, one per joint, got 1'),
+    ("interop.to_moveit", Invalid, lambda at: api.interop.to_moveit(MOTION, dt=0.0), 'dt must be positive and finite, got 0'),
+    ("interop.to_rosbag", Missing, lambda at: api.interop.to_rosbag(at.without("rosbags.rosbag2").value(MOTION), at.path("bag")), "a bag of ROS 2 needs rosbags: pip install 'beetle-ik[bags]'"),
+    ("interop.to_rosbag", Invalid, lambda at: api.interop.to_rosbag(MOTION, at.path("bag"), stamp=-1.0), 'stamp must be a time in s, zero or more, got -1.0'),
+    ("interop.to_rosbag", Invalid, lambda at: api.interop.to_rosbag(MOTION, at.path("bag"), topic="/a", states="/a"), "topic and states must differ, got '/a' for both"),
+    ("interop.to_rosbag", OSError, lambda at: api.interop.to_rosbag(MOTION, at.path("none") / "bag"), "No such folder: '{folder}/none'"),
     ("interop.to_pinocchio", Invalid, lambda at: api.interop.to_pinocchio(at.needs("pinocchio").value(MIMIC)), "joint 'j' of robot 'twin' has mimic joints, which the conversion to Pinocchio does not support"),
     ("interop.to_roboticstoolbox", Invalid, lambda at: api.interop.to_roboticstoolbox(at.needs("roboticstoolbox").value(MIMIC)), "joint 'j' of robot 'twin' has mimic joints, which the conversion to the Robotics Toolbox does not support"),
     ("interop.to_ros", Invalid, lambda at: api.interop.to_ros(MOTION, dt=0.0), 'dt must be positive and finite, got 0'),

@@ -54,6 +54,10 @@ POINT = message("Point", x=float, y=float, z=float)
 QUATERNION = message("Quaternion", x=float, y=float, z=float, w=float)
 POSE = message("Pose", position=POINT, orientation=QUATERNION)
 POSE_STAMPED = message("PoseStamped", header=HEADER, pose=POSE)
+VECTOR = message("Vector3", x=float, y=float, z=float)
+TWIST = message("Twist", linear=VECTOR, angular=VECTOR)
+TWIST_STAMPED = message("TwistStamped", header=HEADER, twist=TWIST)
+MARKERS = message("MarkerArray", markers=list)
 JOINT_STATE = message("JointState", header=HEADER, name=list, position=list, velocity=list, effort=list)
 NUMBERS = message("Float64MultiArray", layout=object, data=list)
 POINTS = message(
@@ -100,7 +104,7 @@ class Node:
         return SimpleNamespace(publish=self.published.append)
 
     def create_subscription(self, kind: type, topic: str, callback: Callable[..., Any], depth: int) -> None:
-        assert kind in (JOINT_STATE, POSE_STAMPED)
+        assert kind in (JOINT_STATE, POSE_STAMPED, TWIST_STAMPED, MARKERS)
         assert depth == 1
         self.callbacks[topic] = callback
 
@@ -163,11 +167,12 @@ MODULES: dict[str, dict[str, object]] = {
     "action_msgs.msg": {"GoalStatus": SimpleNamespace(STATUS_SUCCEEDED=4)},
     "builtin_interfaces.msg": {"Duration": DURATION},
     "control_msgs.action": {"FollowJointTrajectory": SimpleNamespace(Goal=GOAL)},
-    "geometry_msgs.msg": {"PoseStamped": POSE_STAMPED},
+    "geometry_msgs.msg": {"PoseStamped": POSE_STAMPED, "TwistStamped": TWIST_STAMPED},
     "sensor_msgs.msg": {"JointState": JOINT_STATE},
     "std_msgs.msg": {"Float64MultiArray": NUMBERS},
     "std_srvs.srv": {"Trigger": SimpleNamespace(Request=object, Response=RESPONSE)},
     "trajectory_msgs.msg": {"JointTrajectory": TRAJECTORY, "JointTrajectoryPoint": POINTS},
+    "visualization_msgs.msg": {"MarkerArray": MARKERS},
 }
 
 
@@ -189,13 +194,13 @@ def ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.fixture
 def servo(ros: None) -> Any:
     del ros
-    return importlib.import_module("servo").Servo()
+    return importlib.import_module("servo").ServoNode()
 
 
 @pytest.fixture
 def planner(ros: None) -> Any:
     del ros
-    return importlib.import_module("plan_and_execute").Planner()
+    return importlib.import_module("plan_and_execute").PlannerNode()
 
 
 ROBOT = bik.Robot.from_urdf(URDF)
@@ -245,8 +250,8 @@ def test_the_servo_reaches_the_pose_within_the_limits(servo: Any) -> None:
 def test_a_stamped_pose_is_as_old_as_its_stamp_says(servo: Any) -> None:
     servo.callbacks["joint_states"](STATE)
     seen = []
-    follow = servo.tracker.step
-    servo.tracker = SimpleNamespace(
+    follow = servo.servo.jog.tracker.step
+    servo.servo.jog.tracker = SimpleNamespace(
         step=lambda *target, **options: seen.append(options) or follow(*target), time=3.0, dt=0.01
     )
     servo.now = 5_000_000_000
@@ -263,7 +268,7 @@ def test_the_servo_refuses_other_frames_and_poses_that_are_none(servo: Any) -> N
     servo.callbacks["~/target"](broken)
     servo.callbacks["timer"]()
     errors = [text for level, text in servo.log if level == "error"]
-    assert errors[0] == "the pose is given in frame 'camera', and this node takes those in 'base'"
+    assert errors[0] == "~/target: the pose is given in frame 'camera', and this node takes those in 'base'"
     assert "nan" in errors[1].lower()
     np.testing.assert_array_equal(commands(servo), [START])
 
@@ -302,7 +307,7 @@ def test_the_planner_sends_a_motion_to_the_goal(planner: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"ready": False}, "the controller's action server is not there: is the controller active?"),
+        ({"ready": False}, "~/goal: the controller's action server is not there: is the controller active?"),
         ({"accepted": False}, "the controller rejected the trajectory"),
         ({"status": 6}, "the motion ended with error code -4: path tolerance"),
     ],
@@ -326,7 +331,10 @@ def test_the_planner_refuses_what_it_cannot_begin(planner: Any) -> None:
     far.pose.position.x = 9.0
     planner.callbacks["~/goal"](far)
     errors = [text for _, text in planner.log]
-    assert errors[:2] == ["no joint states have arrived yet", "a motion is under way: send the goal when it has ended"]
+    assert errors[:2] == [
+        "~/goal: no joint states have arrived yet",
+        "~/goal: a motion is under way: send the goal when it has ended",
+    ]
     assert len(errors) == 3
     assert Controller.goals == []
 
@@ -335,4 +343,4 @@ def test_a_node_without_a_robot_says_what_is_missing(ros: None, monkeypatch: pyt
     del ros
     monkeypatch.setattr(Node, "parameters", {})
     with pytest.raises(ValueError, match="the parameter robot_description is empty"):
-        importlib.import_module("servo").Servo()
+        importlib.import_module("servo").ServoNode()

@@ -21,23 +21,24 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("stored", &[]),
     ("wording", &[]),
     ("kinematics", &[]),
+    ("dynamics", &["kinematics"]),
     ("shape", &[]),
     ("starts", &["kinematics"]),
     ("closed_form", &["kinematics"]),
     ("bodies", &["kinematics", "shape"]),
-    ("robot", &["kinematics", "starts", "closed_form", "shape", "bodies"]),
+    ("robot", &["kinematics", "dynamics", "starts", "closed_form", "shape", "bodies"]),
     ("path", &[]),
     ("trajectory", &[]),
     ("objective", &[]),
     ("limits", &["robot", "objective"]),
     ("units", &["kinematics", "shape", "robot", "limits"]),
-    ("load", &["kinematics", "shape", "robot", "units"]),
+    ("load", &["kinematics", "dynamics", "shape", "robot", "units"]),
     ("motion", &["limits", "trajectory", "objective"]),
     ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),
     ("calibration", &["robot", "obstacle"]),
     ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
-    ("constraint", &["kinematics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
+    ("constraint", &["kinematics", "dynamics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
     ("minimize", &["objective", "solver"]),
@@ -232,7 +233,7 @@ fn tests_stand_in_the_rooms_of_the_core() {
     let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
     for file in tests.files() {
         let room = room_of(file);
-        let known = ["main", "common", "interface", "layers", "plain_words"].contains(&&*room)
+        let known = ["main", "common", "interface", "layers", "plain_words", "repeatable"].contains(&&*room)
             || LAYERS.iter().any(|(name, _)| *name == room);
         assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
     }

@@ -7,6 +7,7 @@ mod common;
 mod interface;
 mod layers;
 mod plain_words;
+mod repeatable;
 
 mod along_path {
     mod clear;
@@ -28,6 +29,9 @@ mod calibration {
 }
 mod closed_form {
     mod branches;
+}
+mod dynamics {
+    mod laws;
 }
 mod error {
     mod promised;

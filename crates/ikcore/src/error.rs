@@ -145,6 +145,34 @@ pub enum Error {
         /// Description of the problem, with advice.
         problem: Message,
     },
+    /// A call that needs masses got a robot whose masses are unknown or impossible.
+    #[error("robot '{robot}' has no dynamics: {problem}")]
+    NoDynamics {
+        /// The robot's name.
+        robot: String,
+        /// The reason, with advice.
+        problem: Message,
+    },
+    /// Accelerations are not determined: some joints can move without moving mass.
+    #[error(
+        "configuration {row}: the mass matrix of robot '{robot}' is singular: joint '{joint}' and those before it can move without moving mass"
+    )]
+    SingularMassMatrix {
+        /// The robot's name.
+        robot: String,
+        /// Index of the configuration.
+        row: usize,
+        /// The joint's name.
+        joint: String,
+    },
+    /// An inertia that no body has.
+    #[error("{what}: {problem}")]
+    ImpossibleInertia {
+        /// Name of the argument.
+        what: Message,
+        /// The reason.
+        problem: String,
+    },
     /// A URDF that cannot be read.
     #[error("URDF{}: {problem}", .line.map(|l| format!(" line {l}")).unwrap_or_default())]
     Urdf {
@@ -437,7 +465,9 @@ impl Error {
             | Self::InCollision { remedy, .. }
             | Self::NoPace { remedy, .. }
             | Self::UnknownJoint { remedy, .. } => vec![remedy],
+            Self::ImpossibleInertia { what, .. } => vec![what],
             Self::InvalidRobot { problem, .. }
+            | Self::NoDynamics { problem, .. }
             | Self::InvalidMeasurement { problem }
             | Self::Urdf { problem, .. }
             | Self::Srdf { problem, .. }

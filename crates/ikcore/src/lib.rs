@@ -48,7 +48,7 @@
 //! |---|---|
 //! | 0 | [`message`], [`error`], [`interrupt`], [`rng`], [`math`], [`stored`], `wording` |
 //! | 1 | [`kinematics`], [`shape`], [`path`], [`trajectory`], [`objective`] |
-//! | 2 | [`starts`], `closed_form`, `bodies` |
+//! | 2 | [`starts`], `closed_form`, `bodies`, [`dynamics`] |
 //! | 3 | [`robot`] |
 //! | 4 | [`limits`], [`obstacle`], [`manipulability`] |
 //! | 5 | [`units`], [`motion`], [`task`], [`solver`] |
@@ -73,6 +73,7 @@ mod bodies;
 pub mod calibration;
 mod closed_form;
 pub mod constraint;
+pub mod dynamics;
 pub mod error;
 mod free_path;
 pub mod ik;

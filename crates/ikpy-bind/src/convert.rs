@@ -49,7 +49,20 @@ impl<'py> Deref for Numbers<'py> {
 }
 
 /// Arguments with an entry for each joint. A table with the names of the joints may have them in another order.
-const OF_JOINTS: [&str; 9] = ["waypoints_q", "q0", "q1", "q", "qd", "qdd", "posture", "joint angles", "start_qd"];
+const OF_JOINTS: [&str; 12] = [
+    "waypoints_q",
+    "q0",
+    "q1",
+    "q",
+    "qd",
+    "qdd",
+    "posture",
+    "joint angles",
+    "joint velocities",
+    "joint accelerations",
+    "joint torques",
+    "start_qd",
+];
 
 /// Whether the value is a plain list or tuple.
 pub fn is_list(value: &Bound<'_, PyAny>) -> bool {
@@ -370,4 +383,21 @@ pub enum Rows<'py> {
     One(Numbers<'py>),
     /// m rows.
     Many(Numbers<'py>, usize),
+}
+
+impl<'py> Rows<'py> {
+    /// The number of rows; None for a single one.
+    pub fn count(&self) -> Option<usize> {
+        match self {
+            Self::One(_) => None,
+            Self::Many(_, m) => Some(*m),
+        }
+    }
+
+    /// The numbers of all rows.
+    pub fn numbers(&self) -> &Numbers<'py> {
+        match self {
+            Self::One(numbers) | Self::Many(numbers, _) => numbers,
+        }
+    }
 }

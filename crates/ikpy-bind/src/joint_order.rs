@@ -46,6 +46,26 @@ pub fn joint_rows<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> 
     }
 }
 
+/// Reads rates or torques of all joints, one row or as many `rows` as there are configurations; values with names are put into the
+/// order of q.
+pub fn rate_rows<'py>(
+    robot: &Robot,
+    what: &str,
+    value: &Bound<'py, PyAny>,
+    rows: Option<usize>,
+) -> PyResult<Numbers<'py>> {
+    let array = ordered_numbers(robot, what, value)?;
+    let expected = match rows {
+        None => vec![robot.dof()],
+        Some(m) => vec![m, robot.dof()],
+    };
+    if array.shape() == expected {
+        return Ok(array);
+    }
+    let (owner, expected, got) = (robot.name(), shape_text(&expected), shape_text(array.shape()));
+    Err(invalid(format!("{what} of robot '{owner}': expected shape {expected}, that of the joint angles, got {got}")))
+}
+
 /// Reads an array of configurations, whatever their unit; values with names are put into the order of q.
 fn ordered_numbers<'py>(robot: &Robot, what: &str, value: &Bound<'py, PyAny>) -> PyResult<Numbers<'py>> {
     if let Some(numbers) = as_they_are(value) {

@@ -52,6 +52,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     solver::register(module)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<robot::PyBody>()?;
+    module.add_class::<robot::PyInertia>()?;
     module.add_class::<robot::PyVelocityEllipsoid>()?;
     module.add_function(wrap_pyfunction!(pose::pose, module)?)?;
     module.add_class::<limits::PySinusoid>()?;

@@ -1,8 +1,9 @@
 //! `Trajectory`.
 
 use ikcore::interrupt::checkpoint_at;
+use ikcore::robot::{Motions, Robot};
 use ikcore::trajectory::{Coefficients, POWERS, Trajectory};
-use numpy::{PyArray1, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
@@ -12,6 +13,7 @@ use crate::hash::content_hash;
 use crate::monitor::long_call;
 use crate::options::NewArguments;
 use crate::python_calls;
+use crate::robot::PyRobot;
 
 /// A joint trajectory of polynomial segments between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 ///
@@ -187,6 +189,15 @@ impl PyTrajectory {
         Ok((own(row(py, times)), q, qd, qdd))
     }
 
+    /// Returns the joint torques (k, n) (N m; N for prismatic joints) that cause this motion of `robot` at t (k,) (s), (n,) for a number,
+    /// as `robot.torques` does. Times outside the trajectory are clamped.
+    ///
+    /// Raises:
+    ///     InvalidInputError: a robot without dynamics, or with another number of joints.
+    fn torques<'py>(&self, py: Python<'py>, robot: PyRef<'_, PyRobot>, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        self.torques_of(py, &robot.core, t)
+    }
+
     /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
     #[pyo3(signature = (motion, *, pause=0.0))]
     fn then(&self, py: Python<'_>, motion: &Self, pause: f64) -> PyResult<Self> {
@@ -245,6 +256,22 @@ impl PyTrajectory {
 }
 
 impl PyTrajectory {
+    /// Returns the torques that cause this motion of `robot` at `t`.
+    pub fn torques_of<'py>(&self, py: Python<'py>, robot: &Robot, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+        let (n, joints) = (robot.dof(), self.0.joints().len());
+        if n != joints {
+            let (name, theirs, ours) = (robot.name(), counted(n, "joint"), counted(joints, "joint"));
+            return Err(invalid(format!("robot '{name}' has {theirs}, and the trajectory {ours}")));
+        }
+        let (times, single) = times(t)?;
+        let (q, qd, qdd) = self.at_times(py, &times, single)?;
+        let (q, qd, qdd) = (q.to_vec()?, qd.to_vec()?, qdd.to_vec()?);
+        let motions = Motions { q: &q, qd: Some(&qd), qdd: Some(&qdd), wrenches: None };
+        let torques = long_call(py, || robot.torques_all(&motions))?;
+        let shape = if single { vec![n] } else { vec![times.len(), n] };
+        table(py, torques, &shape).map(own)
+    }
+
     fn at_times<'py>(
         &self,
         py: Python<'py>,

@@ -48,6 +48,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::MoreCapsules => "robot.with_capsules(robot.capsules + [(link, a, b, radius), ...])",
         Setting::Attach => "scene.attach_to(robot)",
         Setting::CapsulesAlongLinks => "with_capsules(radius=...)",
+        Setting::Inertias => "them by robot.with_inertias({link: Inertia(link, mass, center, matrix)})",
         Setting::RadiansFromDegrees => "np.radians converts degrees",
         Setting::AnglesInDegrees => "degrees=True takes degrees",
         _ => return setting.to_string(),

@@ -1,4 +1,4 @@
-"""The command line: `beetle-ik robots | fk | solve | track | plan | view | reproduce | doctor`.
+"""The command line: `beetle-ik robots | fk | solve | track | plan | view | ros | reproduce | doctor`.
 
 Exit status: 0 target reached, 1 computed but not reached, 2 wrong input, 130 interrupted by Ctrl-C.
 """

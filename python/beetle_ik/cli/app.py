@@ -17,6 +17,7 @@ from .plan import plan
 from .reach import reach
 from .reproduce import reproduce
 from .robots import robots
+from .ros import ros
 from .solve import solve
 from .track import track
 from .view import view
@@ -93,7 +94,7 @@ def _options_of_all(
         logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
 
 
-for command in (robots, fk, solve, track, reach, calibrate, view, doctor):
+for command in (robots, fk, solve, track, reach, calibrate, view, ros, doctor):
     app.command()(command)
 app.add_typer(plan, name="plan")
 app.command()(reproduce)

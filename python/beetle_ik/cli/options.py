@@ -78,6 +78,13 @@ Jerk = Annotated[
     typer.Option("--jerk-limit", help="rad/s^3: one number, or one per joint: j1,j2,...; default: none."),
 ]
 TipSpeed = Annotated[float | None, typer.Option("--tip-speed", help="Largest speed of the tip in m/s; default: none.")]
+Payload = Annotated[
+    float | None,
+    typer.Option(metavar="KG", help="Mass in kg at the tip; counts with --torque-limits."),
+]
+TorqueLimits = Annotated[
+    bool, typer.Option("--torque-limits", help="Keep the torques that the robot's file gives as effort.")
+]
 SceneFile = Annotated[
     Path | None, typer.Option("--scene", help="Obstacles: a JSON file of shapes; the page on scenes has the format.")
 ]

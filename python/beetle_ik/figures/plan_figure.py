@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .frames import Frames
-from .joints import draw_joints
+from .joints import draw_joints, draw_torques
 from .shapes import draw_from_above, draw_in_space, joints_to_tip
 from .style import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILION
 from .tip_speed import draw_tip_speeds
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from .._core import Plan, TrackResult
 
-ROWS = 4  # panels over time
+_ROWS = 4  # panels over time without torques
 _SAMPLES = 801
 _SNAPSHOTS = 6
 _BESIDE = 101  # points of the way of the tip at a break
@@ -93,13 +93,18 @@ class Scene:
         draw_in_space(self.axes, self._corners.reshape(-1, 3), self._obstacles)
 
 
+def rows(plan: Plan) -> int:
+    """Returns the number of panels over time."""
+    return _ROWS + plan.robot.has_dynamics
+
+
 def draw(figure: Figure, plan: Plan) -> None:
-    """Draws the arm along its path (left), the search history below if there is one, joints and tip speed (right)."""
+    """Draws the arm along its path and the search history, if any (left), and joints, tip speed and torques (right)."""
     halves = figure.add_gridspec(1, 2, width_ratios=[1.0, 1.15])
     left, right = (figure.add_subfigure(halves[0, i]) for i in range(2))  # each has its own margins
-    grid = left.add_gridspec(ROWS, 1)
+    grid = left.add_gridspec(_ROWS, 1)
     searched = len(plan.history) > 1
-    scene = Scene(left, grid[: ROWS - 1 if searched else ROWS, 0], plan)
+    scene = Scene(left, grid[: _ROWS - 1 if searched else _ROWS, 0], plan)
     for i in range(_SNAPSHOTS):
         share = i / (_SNAPSHOTS - 1)
         label = "arm" if i == _SNAPSHOTS - 1 else None
@@ -107,14 +112,16 @@ def draw(figure: Figure, plan: Plan) -> None:
     scene.draw_way()
     scene.axes.legend(loc="upper right", bbox_to_anchor=(-0.12, 1.0), fontsize="small")
     if searched:
-        _draw_search(left.add_subplot(grid[ROWS - 1, 0]), plan)
+        _draw_search(left.add_subplot(grid[_ROWS - 1, 0]), plan)
     time = np.linspace(0.0, plan.trajectory.duration, _SAMPLES)
     labels = ("position [rad, m]", "velocity [rad/s, m/s]", "acceleration [rad/s², m/s²]")
-    panels = right.subplots(ROWS, 1)
-    for axes, label, values in zip(panels[:-1], labels, plan.trajectory.at(time), strict=True):
+    panels = right.subplots(rows(plan), 1)
+    for axes, label, values in zip(panels, labels, plan.trajectory.at(time), strict=False):
         draw_joints(axes, time, values, plan.trajectory.joint_names)
         axes.set_ylabel(label)
-    draw_tip_speeds(panels[-1], plan, _SAMPLES)
+    draw_tip_speeds(panels[_ROWS - 1], plan, _SAMPLES)
+    if plan.robot.has_dynamics:
+        draw_torques(panels[-1], time, plan.torques(time), plan.robot)
     for axes in panels:
         axes.set_xlim(0.0, plan.trajectory.duration)
         for each in plan.breaks:

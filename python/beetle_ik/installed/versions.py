@@ -7,14 +7,18 @@ from collections.abc import Iterator
 from .._core import __version__, _instructions
 
 EXTRAS = {
+    "bags": ["rosbags"],
     "cli": ["rich", "typer"],
     "distributed": ["dask", "distributed", "zarr"],
     "interop": ["pandas"],
+    "jax": ["jax"],
     "plot": ["matplotlib"],
     "report": ["jinja2"],
     "robots": ["robot_descriptions", "xacro"],
+    "ros": ["cyclonedds"],
     "sim": ["mujoco"],
     "surfaces": ["trimesh"],
+    "torch": ["torch"],
     "view": ["pycollada", "trimesh", "viser"],
     "vision": ["scikit-image"],
 }

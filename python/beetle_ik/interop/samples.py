@@ -1,5 +1,6 @@
 """Samples of a trajectory for other libraries."""
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -22,3 +23,15 @@ def samples(trajectory: Trajectory, dt: float | None) -> Samples:
     if dt is None:
         return trajectory.time, trajectory.q, trajectory.qd, trajectory.qdd
     return trajectory.sample(dt)
+
+
+def named_joints(trajectory: Trajectory, names: Sequence[str] | None) -> list[str]:
+    """Returns names of the joints, those of the trajectory if none are given.
+
+    Raises:
+        InvalidInputError: another number of names.
+    """
+    given = list(trajectory.joint_names if names is None else names)
+    if len(given) != len(trajectory.joint_names):
+        raise InvalidInputError(f"joint_names: expected {len(trajectory.joint_names)}, one per joint, got {len(given)}")
+    return given

@@ -49,7 +49,7 @@ def robot(
         except UrdfError as error:
             problem = re.sub(r"^URDF( line \d+)?: ", "MuJoCo model: ", str(error))
             raise InvalidInputError(problem) from None
-    made = made.with_held(reader.rests(made, hold or {}))
+    made = made.with_held(reader.rests(made, hold or {})).with_gravity(reader.gravity(made.link_names[0]))
     reader.require_kept(made)
     made._doubt_degrees()
     return made
@@ -129,7 +129,8 @@ class _Reader:
         lines = [f"<robot name={quoteattr(self._name())}>", *(f"<link name={quoteattr(self.bodies[0])}/>",)]
         for body in range(1, model.nbody):
             lines += self._joints_to(body)
-            lines += [f"<link name={quoteattr(self.bodies[body])}>", *self._collisions(body), "</link>"]
+            inner = [*self._inertial(body), *self._collisions(body)]
+            lines += [f"<link name={quoteattr(self.bodies[body])}>", *inner, "</link>"]
         for tip in tips:
             if tip in self.bodies:
                 continue
@@ -199,14 +200,53 @@ class _Reader:
         if self._kind(joint) in ("spherical", "floating"):
             return []
         inner = [f"<axis xyz='{exact(model.jnt_axis[joint])}'/>"]
+        effort = self._effort(joint)
         if model.jnt_limited[joint] or self._kind(joint) == "prismatic":
             lower, upper = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
-            inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}'/>")
+            inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}' effort='{effort!r}'/>")
+        elif np.isfinite(effort):
+            inner.append(f"<limit effort='{effort!r}'/>")
+        dof = model.jnt_dofadr[joint]
+        damping, friction, rotor = (
+            float(np.ravel(values[dof])[0])
+            for values in (model.dof_damping, model.dof_frictionloss, model.dof_armature)
+        )
+        if damping or friction or rotor:
+            inner.append(f"<dynamics damping='{damping!r}' friction='{friction!r}' armature='{rotor!r}'/>")
         master, scale, offset = self.equalities.drives.get(joint, (None, 0.0, 0.0))
         if master is not None:
             name = quoteattr(self.joints[master])
             inner.append(f"<mimic joint={name} multiplier='{scale!r}' offset='{offset!r}'/>")
         return inner
+
+    def _effort(self, joint: int) -> float:
+        """Returns the largest force or torque of the actuators of a joint; infinite if it is not limited."""
+        model = self.model
+        if model.jnt_actfrclimited[joint]:
+            return float(np.abs(model.jnt_actfrcrange[joint]).min())
+        on_joint = int(self.mujoco.mjtTrn.mjTRN_JOINT)
+        drives = (model.actuator_trntype == on_joint) & (model.actuator_trnid[:, 0] == joint)
+        if not drives.any() or not model.actuator_forcelimited[drives].all():
+            return float("inf")
+        forces = np.abs(model.actuator_forcerange[drives]).min(axis=1)
+        return float(np.abs(model.actuator_gear[drives, 0]) @ forces) or float("inf")
+
+    def gravity(self, base: str) -> NDArray[np.float64]:
+        """Returns the acceleration of free fall (3,) in the frame of a body at the reference positions of the model."""
+        data = self.mujoco.MjData(self.model)
+        self.mujoco.mj_kinematics(self.model, data)
+        turn = np.array(data.xmat[self.bodies.index(base)]).reshape(3, 3) if base in self.bodies else np.eye(3)
+        return np.array(turn.T @ self.model.opt.gravity)
+
+    def _inertial(self, body: int) -> Iterator[str]:
+        """Yields mass, centre and principal moments of a body that has a mass."""
+        model = self.model
+        if not model.body_mass[body] > 0.0:
+            return
+        mass, place = float(model.body_mass[body]), pose(model.body_ipos[body], wxyz=model.body_iquat[body])
+        moments = zip(("ixx", "iyy", "izz"), map(float, model.body_inertia[body]), strict=True)
+        inertia = " ".join(f"{name}='{moment!r}'" for name, moment in moments)
+        yield f"<inertial>{_origin(place)}<mass value='{mass!r}'/><inertia {inertia}/></inertial>"
 
     def _collisions(self, body: int) -> Iterator[str]:
         """Yields the geoms that take part in collisions."""

@@ -10,7 +10,10 @@ from . import (
     clearance,
     command_line,
     dead_ends,
+    derivatives,
     described,
+    doors,
+    dynamics,
     held_arms,
     joint_weights,
     keeping,
@@ -37,6 +40,8 @@ from . import (
 
 _MODULES = (
     kinematics,
+    derivatives,
+    dynamics,
     solving,
     round_poses,
     searching,
@@ -65,6 +70,7 @@ _MODULES = (
     calls,
     command_line,
     units,
+    doors,
 )
 ATTACKS: dict[str, Attack] = {attack.name: attack for module in _MODULES for attack in module.ATTACKS}
 

@@ -14,6 +14,8 @@ use ikcore::solver::{Monitor, Status, Stop, Unattended};
 use ikcore::task::{Task, TaskKind};
 use nalgebra::{Rotation3, Vector3};
 
+use crate::common::cases;
+
 const MARGIN: f64 = 2e-3;
 const Q: [f64; 7] = [0.1, 0.2, 0.1, -2.2, 0.1, 2.4, 0.8];
 
@@ -99,7 +101,7 @@ fn plans_among_random_boxes_are_clear_at_every_instant() {
         let robot = arm(name);
         let mut rng = rng::stream(11, 0);
         let mut clear = 0;
-        for seed in 0..12 {
+        for seed in 0..cases(9) as usize {
             let q = robot.random_configurations(1, &mut rng).unwrap();
             let mut step = || std::array::from_fn(|_| rng.uniform_in(-0.15, 0.15));
             let tip_path = bent(&robot, &q, step(), step());

@@ -12,6 +12,17 @@ use ikcore::rng;
 use ikcore::robot::Robot;
 use ikcore::solver::Monitor;
 use ikcore::task::{Aims, Criterion, Target};
+use proptest::test_runner::Config;
+
+/// Number of cases of a drawn test that has `usual` ones: as many times more as `PROPTEST_CASES` is of its default of 256.
+pub fn cases(usual: u32) -> u32 {
+    (u64::from(usual) * u64::from(Config::default().cases) / 256).max(1) as u32
+}
+
+/// Settings of a property with `usual` cases.
+pub fn drawn(usual: u32) -> Config {
+    Config { cases: cases(usual), ..Config::default() }
+}
 
 /// Built-in robot of this name.
 pub fn robot(name: &str) -> Robot {

@@ -1,6 +1,7 @@
 //! Each error that `# Errors` of a public function names has a row here: a call that returns it, and the exact message.
 
 mod calls;
+mod dynamics;
 mod motions;
 mod robots;
 mod samples;
@@ -76,6 +77,7 @@ fn rows() -> Vec<Row> {
     [
         motions::paths_and_trajectories(),
         robots::robots_and_shapes(),
+        dynamics::masses_and_torques(),
         settings::tasks_limits_and_solvers(),
         calls::calls(),
     ]

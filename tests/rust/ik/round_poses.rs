@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::common::arms::{arm, calibrated_ur10};
-use crate::common::{pose_at, robot};
+use crate::common::{cases, pose_at, robot};
 use ikcore::ik::{AllOptions, SolveOptions, solve, solve_all};
 use ikcore::math::Frame;
 use ikcore::rng::{self, LazyRng};
@@ -65,7 +65,7 @@ fn assert_not_excluded(robot: &Robot, q: &[f64]) {
 fn round_poses_of_arms_are_not_called_out_of_reach() {
     let mut rng = rng::stream(17, 0);
     for full in ARMS.map(robot) {
-        for _ in 0..60 {
+        for _ in 0..cases(24) {
             let robot = narrowed(&full, &mut rng);
             for _ in 0..8 {
                 assert_not_excluded(&robot, &round_configuration(&robot, &mut rng));

@@ -7,6 +7,8 @@ use ikcore::robot::Robot;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
+use crate::common::drawn;
+
 const NUMBERS: [&str; 16] = [
     "0",
     "-0.0",
@@ -105,7 +107,7 @@ fn use_of(robot: &Robot) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(drawn(400))]
 
     #[test]
     fn damaged_urdfs_are_read_or_refused(changes in damage(), pair in any::<bool>()) {

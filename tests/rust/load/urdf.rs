@@ -405,8 +405,6 @@ fn real_robots_load_stripped_and_in_full() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
     /// Text files with random damage: the result is a robot or an error.
     #[test]
     fn no_text_makes_it_panic(

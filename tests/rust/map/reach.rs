@@ -94,9 +94,11 @@ fn planar_arms_and_tasks_have_maps() {
     assert!(reached > 50 && missed == 0 && alone == 0, "{reached} {missed} {alone}");
     for kind in [TaskKind::Position, TaskKind::Pointing { axis: [0.0, 1.0, 1.0] }] {
         let options = MapOptions { task: Some(kind.into()), evaluations: 400, ..MapOptions::default() };
-        let grid = MapGrid::new(&robot("ur5e"), &LAYOUT, &options).unwrap();
+        // Such tasks are solved by search.
+        let layout = MapLayout { voxel: 0.5, ..LAYOUT };
+        let grid = MapGrid::new(&robot("ur5e"), &layout, &options).unwrap();
         assert_eq!(grid.orientations().count(), if kind == TaskKind::Position { 1 } else { 6 });
-        let [reached, missed, alone] = compared(&robot("ur5e"), &LAYOUT, &options);
+        let [reached, missed, alone] = compared(&robot("ur5e"), &layout, &options);
         assert!(reached > 20 && missed * 50 <= reached && alone == 0, "{kind:?}: {reached} {missed} {alone}");
     }
 }

@@ -5,7 +5,8 @@ use ikcore::math::one_joint::{MotionState, Rates, Transfer};
 use ikcore::motion::{ArmState, state_to_state};
 use ikcore::trajectory::Trajectory;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+use crate::common::drawn;
 
 type Rows = [[f64; 3]; 3];
 
@@ -280,7 +281,7 @@ fn excess(limit: f64, rate: f64, duration: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, rng_seed: RngSeed::Fixed(3), ..ProptestConfig::default() })]
+    #![proptest_config(drawn(2000))]
 
     #[test]
     fn limits_hold_throughout_and_the_ends_are_met(

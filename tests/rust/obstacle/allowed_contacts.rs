@@ -11,6 +11,8 @@ use ikcore::solver::{Status, Unattended};
 use ikcore::task::Target;
 use ikcore::{Error, Result};
 
+use crate::common::cases;
+
 const READY: [f64; 7] = [0.0, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8];
 
 /// Panda with a foot, capsules on its links and a box in its hand, but without the bodies of these links.
@@ -59,7 +61,7 @@ fn a_link_that_may_touch_an_obstacle_is_not_kept_from_it() {
     let robot = panda_without(&[]);
     let mut rng = rng::stream(31, 0);
     let mut seen = [0; 2];
-    for case in 0..60 {
+    for case in 0..cases(24) {
         // Many obstacles are found by a tree.
         let count = if case % 6 == 5 { 30 } else { 1 + case % 4 };
         let obstacles: Obstacles = (0..count).map(|_| random_obstacle(&mut rng)).collect();

@@ -362,6 +362,10 @@ fn a_contact_lies_on_both_surfaces_and_its_gradient_is_the_slope() {
 #[test]
 fn the_deepest_of_several_bodies_in_an_obstacle_is_the_nearest() {
     let robot = Robot::named("panda").unwrap().with_capsules_along_links(0.05).unwrap();
+    // Each body by itself, with no other to compare it with.
+    let panda = Robot::named("panda").unwrap();
+    let by_themselves: Vec<Robot> =
+        robot.capsules().iter().map(|capsule| panda.with_capsules(vec![capsule.clone()]).unwrap()).collect();
     let mut rng = rng::stream(29, 0);
     let mut several = 0;
     for case in 0..200 {
@@ -371,12 +375,8 @@ fn the_deepest_of_several_bodies_in_an_obstacle_is_the_nearest() {
         let shape = if case % 2 == 0 { Shape::cuboid(center, size, None) } else { Shape::sphere(center, size[0]) };
         let obstacles = [shape.unwrap()];
         let all = Scene::new(&robot, &obstacles).unwrap().clearance(&q).unwrap();
-        // Each body by itself, with no other to compare it with.
-        let alone = robot.capsules().iter().map(|capsule| {
-            let robot = Robot::named("panda").unwrap().with_capsules(vec![capsule.clone()]).unwrap();
-            Scene::new(&robot, &obstacles).unwrap().clearance(&q).unwrap()
-        });
-        let alone: Vec<f64> = alone.collect();
+        let clearance = |robot| Scene::new(robot, &obstacles).unwrap().clearance(&q).unwrap();
+        let alone: Vec<f64> = by_themselves.iter().map(clearance).collect();
         several += usize::from(alone.iter().filter(|distance| **distance < 0.0).count() > 1);
         let deepest = alone.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(deepest > 0.0 || (all - deepest).abs() < 1e-9, "case {case}: {all}, one by one {deepest}");

@@ -5,7 +5,8 @@ use ikcore::motion::{ArmState, state_to_state};
 use ikcore::planning::{ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal};
 use ikcore::trajectory::Trajectory;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+use crate::common::drawn;
 
 const FIELDS: [Field; 3] = [Field::Velocity, Field::Acceleration, Field::Jerk];
 
@@ -106,7 +107,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(18), cases: 200, ..ProptestConfig::default() })]
+    #![proptest_config(drawn(80))]
 
     #[test]
     fn limits_and_path_are_kept_and_looser_limits_cost_no_time(

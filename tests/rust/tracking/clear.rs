@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::common::cases;
 use crate::common::executed_curve::ExecutedCurve;
 use ikcore::limits::{Field, Limits, Profile, Sinusoid};
 use ikcore::math::Pose;
@@ -394,7 +395,7 @@ fn late(session: &mut Session, said: f64) -> usize {
 #[test]
 fn a_stop_among_obstacles_takes_as_long_as_it_says() {
     let robot = panda();
-    for (seed, limits) in all_limits(&robot).into_iter().cycle().take(9).enumerate() {
+    for (seed, limits) in all_limits(&robot).into_iter().cycle().take(cases(4) as usize).enumerate() {
         let mut rng = rng::stream(21, seed as u64);
         let obstacles = random_obstacles(&robot, &mut rng);
         let around = surroundings(obstacles.clone());

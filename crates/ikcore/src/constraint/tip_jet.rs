@@ -6,10 +6,10 @@
 
 use crate::kinematics::chain::Transmission;
 use crate::math::Frame;
-use crate::math::bernstein::{bernstein, choose};
+use crate::math::bernstein::bernstein;
 use crate::math::vector3::{Vector, add_scaled, cross, dot, norm, sub};
 use crate::robot::Robot;
-use crate::trajectory::Coefficients;
+use crate::trajectory::{Coefficients, derivative_bounds};
 
 /// Number of Taylor coefficients of a velocity.
 const ORDER: usize = 5;
@@ -171,16 +171,11 @@ impl Series {
 impl Rates {
     /// The derivative of `scale` times a polynomial on \[-1, 1\].
     fn of(polynomial: &Coefficients, scale: f64) -> Self {
-        let (mut numbers, mut sizes) = ([0.0; ORDER], [0.0; ORDER + 1]);
+        let mut numbers = [0.0; ORDER];
         for (k, number) in numbers.iter_mut().enumerate() {
             *number = scale * (k + 1) as f64 * polynomial[k + 1];
         }
-        for (k, size) in sizes.iter_mut().enumerate() {
-            let powers = polynomial.iter().enumerate().skip(k + 1);
-            let sum: f64 = powers.map(|(power, c)| choose(power, k + 1) as f64 * c.abs()).sum();
-            *size = scale.abs() * (k + 1) as f64 * sum;
-        }
-        Self { numbers, sizes }
+        Self { numbers, sizes: derivative_bounds(polynomial).map(|bound: f64| scale.abs() * bound) }
     }
 }
 

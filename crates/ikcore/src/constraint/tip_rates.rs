@@ -1,27 +1,18 @@
 //! Limits of the speed, acceleration and turn speed of tips, and their certificate over a motion.
 //!
-//! Over an interval a [`TipJet`](super::tip_jet::TipJet) bounds all three. Where a bound is too large, the interval is halved, until the largest is
-//! known to 1e-6 or is within the limit.
+//! Over an interval a [`TipJet`](super::tip_jet::TipJet) bounds all three.
 
 use std::sync::Arc;
 
+use super::joint_span::JointSpan;
+use super::largest_factor::{IntervalFactor, TIGHT, largest_factor};
 use super::tip_jet::{TipElements, TipJet};
 use crate::error::{Error, Result};
-use crate::kinematics::link_tree::FrameBuffer;
 use crate::limits::{ROUNDING, TipField, TipLimits};
 use crate::math::vector3::norm;
 use crate::message::{Message, message};
 use crate::robot::Robot;
-use crate::trajectory::{Coefficients, POWERS, Trajectory};
-
-/// Relative accuracy of the largest rate of a motion that exceeds its limit, and the room left below the limit.
-pub(crate) const TIGHT: f64 = 1e-6;
-
-/// Intervals examined before bounds are taken as they are.
-const MOST_INTERVALS: usize = 100_000;
-
-/// Most halvings of a segment.
-const DEEPEST: usize = 40;
+use crate::trajectory::{Coefficients, Trajectory};
 
 /// Robot and limits of its tips.
 #[derive(Debug, Clone)]
@@ -84,7 +75,7 @@ impl TipRates {
         let mut at = JointSpan::new(&self.robot);
         at.set(&self.robot, std::iter::empty(), [0.0, 1.0]);
         for tip in &mut self.tips {
-            let [speed, turn] = tip.elements.fastest(&self.robot, &at.frames, [velocity, position]);
+            let [speed, turn] = tip.elements.fastest(&self.robot, at.frames(), [velocity, position]);
             for (field, fastest) in [(TipField::Speed, speed), (TipField::TurnSpeed, turn)] {
                 if fastest * (1.0 + TIGHT) + TIGHT < tip.limit(field) {
                     tip.limits[field as usize] = f64::INFINITY;
@@ -124,7 +115,7 @@ impl TipRates {
     /// Factor by which the motion over an interval of twice `half` (s) must be slowed down to keep limits of these kinds, at most.
     pub fn factor(&self, at: &JointSpan, half: f64, fields: &[TipField]) -> f64 {
         let of_tip = |tip: &LimitedTip| {
-            let jet = at.jet(&self.robot, tip);
+            let jet = at.jet(&self.robot, &tip.elements);
             fields.iter().map(|field| tip.factor(&jet, half, *field)[1]).fold(0.0, f64::max)
         };
         self.tips.iter().map(of_tip).fold(0.0, f64::max)
@@ -134,7 +125,7 @@ impl TipRates {
     /// accelerations, in a motion of this duration (s) that begins at the middle of `at`.
     pub fn growth(&self, at: &JointSpan, rates: impl Fn(usize) -> [f64; 2], duration: f64) -> f64 {
         let of_tip = |tip: &LimitedTip| {
-            let [speed, turn_speed] = tip.elements.growth(&self.robot, &at.frames, &rates, duration);
+            let [speed, turn_speed] = tip.elements.growth(&self.robot, at.frames(), &rates, duration);
             (speed / tip.limit(TipField::Speed)).max(turn_speed / tip.limit(TipField::TurnSpeed))
         };
         self.tips.iter().map(of_tip).fold(0.0, f64::max)
@@ -161,7 +152,7 @@ impl TipRates {
         let mut at = JointSpan::new(&self.robot);
         at.set(&self.robot, polynomials.iter().copied(), [t, 1.0]);
         let of_tip = |(i, tip): (usize, &LimitedTip)| {
-            let jet = at.jet(&self.robot, tip);
+            let jet = at.jet(&self.robot, &tip.elements);
             TipField::ALL.map(|field| {
                 let [slowdown, _] = tip.factor(&jet, 1.0, field);
                 (i, field, if field == TipField::Acceleration { slowdown * slowdown } else { slowdown })
@@ -177,19 +168,31 @@ impl TipRates {
 
     fn largest(&self, motion: &Trajectory, fields: &[TipField], only: Option<usize>, enough: f64) -> f64 {
         let of = only.map_or(&self.tips[..], |tip| &self.tips[tip..=tip]);
-        // A rate far below its limit may be any; so a tip that stays in place needs no short intervals.
-        let enough = enough.max(1e-9);
-        let mut walk =
-            Walk { at: JointSpan::new(&self.robot), of, fields, enough, seen: 0.0, proven: 0.0, intervals: 0 };
-        let n = motion.joints().len();
-        let segments = || motion.coefficients().chunks_exact(n).zip(motion.knots().windows(2));
-        for (polynomials, ends) in segments() {
-            walk.see(&self.robot, polynomials, [0.0, ends[1] - ends[0]]);
+        let at = JointSpan::new(&self.robot);
+        largest_factor(motion, enough, &mut TipFactor { robot: &self.robot, at, of, fields })
+    }
+}
+
+/// The factor by which tips must be slowed down over an interval.
+struct TipFactor<'a> {
+    robot: &'a Robot,
+    at: JointSpan,
+    of: &'a [LimitedTip],
+    fields: &'a [TipField],
+}
+
+impl IntervalFactor for TipFactor<'_> {
+    fn over(&mut self, polynomials: &[Coefficients], [middle, half]: [f64; 2]) -> [f64; 2] {
+        self.at.set(self.robot, polynomials.iter().copied(), [middle, half]);
+        let [mut seen, mut bound] = [0.0_f64; 2];
+        for tip in self.of {
+            let jet = self.at.jet(self.robot, &tip.elements);
+            for field in self.fields {
+                let [in_middle, at_most] = tip.factor(&jet, half, *field);
+                (seen, bound) = (seen.max(in_middle), bound.max(at_most));
+            }
         }
-        for (polynomials, ends) in segments() {
-            walk.halve(&self.robot, polynomials, [0.0, ends[1] - ends[0]], 0);
-        }
-        walk.proven
+        [seen, bound]
     }
 }
 
@@ -213,90 +216,6 @@ impl LimitedTip {
                 [norm(&change.middle()), change.bound()].map(|rate| (rate / limit).sqrt() / half)
             }
         }
-    }
-}
-
-/// An interval of a joint motion: its polynomials on \[-1, 1\], and the moving elements in its middle. Reused for any number of them.
-#[derive(Debug, Clone)]
-pub(crate) struct JointSpan {
-    joints: Vec<Coefficients>,
-    q: Vec<f64>,
-    frames: FrameBuffer,
-}
-
-impl JointSpan {
-    /// An interval of a motion of `robot`.
-    pub fn new(robot: &Robot) -> Self {
-        let n = robot.dof();
-        Self { joints: vec![[0.0; POWERS]; n], q: vec![0.0; n], frames: robot.frame_buffer() }
-    }
-
-    /// Becomes the interval around `middle`, `half` to either side, of these polynomials.
-    pub fn set(&mut self, robot: &Robot, polynomials: impl Iterator<Item = Coefficients>, [middle, half]: [f64; 2]) {
-        for ((joint, q), polynomial) in self.joints.iter_mut().zip(&mut self.q).zip(polynomials) {
-            *joint = polynomial;
-            for first in 0..POWERS - 1 {
-                for power in (first..POWERS - 1).rev() {
-                    joint[power] += middle * joint[power + 1];
-                }
-            }
-            let mut scale = 1.0;
-            for c in joint.iter_mut() {
-                *c *= scale;
-                scale *= half;
-            }
-            *q = joint[0];
-        }
-        robot.write_frames(&self.q, &mut self.frames);
-    }
-
-    /// The motion of a tip.
-    pub fn jet(&self, robot: &Robot, tip: &LimitedTip) -> TipJet {
-        tip.elements.jet(robot, &self.frames, &self.joints)
-    }
-}
-
-/// A search for the largest factor of a motion.
-struct Walk<'a> {
-    at: JointSpan,
-    of: &'a [LimitedTip],
-    fields: &'a [TipField],
-    enough: f64,
-    /// Largest factor at a point.
-    seen: f64,
-    /// Largest bound that was taken.
-    proven: f64,
-    intervals: usize,
-}
-
-impl Walk<'_> {
-    /// Bounds the factor over an interval, and notes the one in its middle.
-    fn see(&mut self, robot: &Robot, polynomials: &[Coefficients], [from, to]: [f64; 2]) -> f64 {
-        let half = 0.5 * (to - from);
-        self.at.set(robot, polynomials.iter().copied(), [from + half, half]);
-        let mut bound = 0.0_f64;
-        for tip in self.of {
-            let jet = self.at.jet(robot, tip);
-            for field in self.fields {
-                let [seen, at_most] = tip.factor(&jet, half, *field);
-                self.seen = self.seen.max(seen);
-                bound = bound.max(at_most);
-            }
-        }
-        bound
-    }
-
-    fn halve(&mut self, robot: &Robot, polynomials: &[Coefficients], [from, to]: [f64; 2], depth: usize) {
-        self.intervals += 1;
-        let bound = self.see(robot, polynomials, [from, to]);
-        let most = if self.seen > self.enough { self.seen * (1.0 + TIGHT) } else { self.enough };
-        if bound <= most.max(self.proven) || depth == DEEPEST || self.intervals > MOST_INTERVALS {
-            self.proven = self.proven.max(bound);
-            return;
-        }
-        let middle = 0.5 * (from + to);
-        self.halve(robot, polynomials, [from, middle], depth + 1);
-        self.halve(robot, polynomials, [middle, to], depth + 1);
     }
 }
 

@@ -18,6 +18,7 @@ use crate::plan::{
     refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
+use crate::timing::ConstantLimits;
 
 /// Number of configurations that all trees may examine in all, for each joint: a second or two of an arm in a narrow place.
 const BUDGET_PER_JOINT: usize = 150_000;
@@ -44,13 +45,16 @@ pub(super) fn plan(
     let is_lines = search.robot.capsules().is_empty();
     let pairs = search.pairs(PAIRS, monitor)?;
     let first = pairs.first().ok_or_else(no_pair)?;
-    let robot = search.robot;
+    let (robot, limits) = (search.robot, search.limits);
     let is_kept = |q: &[f64]| options.keeps.iter().all(|keep| keep.holds(robot, q));
-    let is_clear = |q: &[f64]| is_kept(q) && space.keeps(q, END_RESERVE);
+    let is_held = |q: &[f64]| limits.too_heavy(q).is_none();
+    let is_clear = |q: &[f64]| is_kept(q) && space.keeps(q, END_RESERVE) && is_held(q);
     let refusal = |name: EndName, end: &Endpoint| match end {
         Endpoint::Configuration(q) => {
             let what = name.of_target();
-            refuse_broken(&what, &options.keeps, robot, q).and_then(|()| refuse_collision(&what, space, q))
+            refuse_broken(&what, &options.keeps, robot, q)?;
+            refuse_too_heavy(&what, limits, q)?;
+            refuse_collision(&what, space, q)
         }
         Endpoint::Targets { .. } => Ok(()),
     };
@@ -67,12 +71,12 @@ pub(super) fn plan(
         open.extend(search.random_pairs(PAIRS, TRIES, is_open, monitor)?);
     }
     open.extend(search.other_ways(&open));
-    let limits = search.limits;
     let budget = options.stop.map_or(BUDGET_PER_JOINT * search.robot.dof(), |stop| stop.max_evaluations);
     let most = most_kept(space, &open);
     let ranges = TreeSearch::ranges(search.robot, limits, open.iter().flat_map(|pair| [&pair.start, &pair.end]));
     let mut trees =
         TreeSearch::new(scene, ranges, margin + most.min(path_search::SEARCH_RESERVE), budget, search.deadline);
+    trees.check.held = limits.hold_check();
     trees.check.kept = PathConstraints::of(robot, &options.keeps, &trees.ranges);
     let mut sweep = ClearanceSweep::new(scene);
     let certified = match open.is_empty() {
@@ -114,6 +118,8 @@ pub(super) fn plan(
             let (obstruction, own_points) =
                 if let (true, Some(broken)) = (open.is_empty(), no_way::broken_ends(&pairs, &options.keeps, robot)) {
                     (broken, None)
+                } else if let (true, Some(heavy)) = (open.is_empty(), no_way::heavy_ends(&pairs, limits)) {
+                    (heavy, None)
                 } else if open.is_empty() {
                     no_way::blocked_ends(scene, &pairs, margin + END_RESERVE)
                 } else {
@@ -130,6 +136,14 @@ pub(super) fn plan(
     let taken = pairs.iter().chain(&open).min_by(|one, other| distance(one).total_cmp(&distance(other)));
     plan.chosen_end = taken.map(|pair| pair.chosen);
     Ok(plan)
+}
+
+/// Checks that the joints can hold the arm at an end.
+fn refuse_too_heavy(what: &str, limits: &ConstantLimits, q: &[f64]) -> Result<()> {
+    match limits.too_heavy(q) {
+        None => Ok(()),
+        Some(problem) => Err(Error::Unreachable { what: what.into(), problem: problem.into() }),
+    }
 }
 
 /// Returns the pair whose straight line penetrates least, at samples.

@@ -70,7 +70,8 @@ impl Timing<'_, '_> {
             let followed = kept.followed(&motion, self.limits)?;
             return Ok(followed.filter(|motion| self.first_contact(motion).is_none()));
         }
-        let Some(mut fault) = self.first_fault(&motion) else { return Ok(Some(motion)) };
+        let fault = self.first_fault(&motion).or((!self.limits.keep_torque(&motion)).then_some(0.0));
+        let Some(mut fault) = fault else { return Ok(Some(motion)) };
         let stopping = path.with_stops(self.limits)?;
         let mut blended = motion;
         for _ in 0..NARROWINGS {
@@ -84,11 +85,12 @@ impl Timing<'_, '_> {
                 break;
             }
             match self.first_fault(&blended) {
+                None if !self.limits.keep_torque(&blended) => break,
                 None => return Ok(Some(blended)),
                 Some(at) => fault = at,
             }
         }
-        Ok(self.first_fault(&stopping).is_none().then_some(stopping))
+        Ok((self.limits.keep_torque(&stopping) && self.first_fault(&stopping).is_none()).then_some(stopping))
     }
 
     /// The time at which a motion comes too near to something or leaves a constraint (s), if any.

@@ -1,7 +1,7 @@
 //! Whether a straight line in joint space can be part of a path: clear of everything, at closely spaced configurations, and within all
-//! constraints, at every instant.
+//! constraints, at every instant; and whether joints can hold the arm all along it.
 
-use crate::constraint::{Keep, KeepSweep, Onto};
+use crate::constraint::{HoldCheck, Keep, KeepSweep, Onto};
 use crate::obstacle::{Edge, SampledLine};
 use crate::robot::Robot;
 
@@ -13,6 +13,8 @@ pub(super) struct LineCheck<'a> {
     pub clear: SampledLine<'a>,
     /// The constraints, if there are any.
     pub kept: Option<PathConstraints<'a>>,
+    /// The check that joints can hold the arm, if torques are limited.
+    pub held: Option<HoldCheck<'a>>,
 }
 
 /// Constraints of a path.
@@ -44,9 +46,13 @@ impl<'a> LineCheck<'a> {
     /// Whether a line is clear and within the constraints; `from` is known to be both.
     pub fn is_clear(&mut self, from: &[f64], to: &[f64]) -> bool {
         match &self.kept {
-            Some(kept) if kept.is_narrow => self.is_clear_way(from, to),
-            _ => self.is_kept(from, to) && self.clear.is_clear(from, to),
+            Some(kept) if kept.is_narrow => self.is_clear_way(from, to) && self.is_held(from, to),
+            _ => self.is_kept(from, to) && self.clear.is_clear(from, to) && self.is_held(from, to),
         }
+    }
+
+    fn is_held(&mut self, from: &[f64], to: &[f64]) -> bool {
+        self.held.as_mut().is_none_or(|held| held.holds_along(from, to))
     }
 
     fn is_kept(&mut self, from: &[f64], to: &[f64]) -> bool {

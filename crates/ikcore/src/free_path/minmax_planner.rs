@@ -41,7 +41,9 @@ pub(crate) fn point_to_point(
     }
     match space {
         Some(space) => among_obstacles::plan(&mut search, space, options, monitor),
-        None if options.keeps.is_empty() => without_obstacles(&mut search, options.objective, monitor),
+        None if options.keeps.is_empty() && !limits.limit_torque() => {
+            without_obstacles(&mut search, options.objective, monitor)
+        }
         None => {
             let plan = among_obstacles::plan(&mut search, &ClearSpace::empty(robot)?, options, monitor)?;
             Ok(Plan { clearance: None, surroundings: None, ..plan })

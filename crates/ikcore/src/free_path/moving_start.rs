@@ -48,15 +48,15 @@ pub(super) fn begin(
     check(search, velocity)?;
     refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
-    // Motions of state_to_state know nothing of tips; those that keep their limits are taken.
-    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot)).without_tips();
+    // Motions of state_to_state know nothing of tips and torques; those that keep their limits are taken.
+    let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot)).of_joint_motion();
     let constant = search.limits;
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
     let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
     let mut kept = (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps));
     let mut is_free = |motion: &Trajectory| {
         let whole = [0.0, motion.duration()];
-        constant.keep_tips(motion)
+        constant.keep_whole(motion)
             && kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
             && sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
     };
@@ -84,8 +84,9 @@ pub(super) fn begin(
     if is_free(&braking) {
         return Ok(Beginning::Stop(braking));
     }
-    if !constant.keep_tips(&braking) {
-        let problem = message!["at ", Setting::StartVelocity, " the arm cannot stop within the limits of its tips"];
+    if !constant.keep_whole(&braking) {
+        let problem =
+            message!["at ", Setting::StartVelocity, " the arm cannot stop within the limits of its tips or torques"];
         return Err(Error::Infeasible { problem });
     }
     let problem = message![

@@ -4,6 +4,7 @@ use super::end_pair::EndPair;
 use crate::constraint::Keep;
 use crate::obstacle::{Contact, Scene, Sensed};
 use crate::robot::Robot;
+use crate::timing::ConstantLimits;
 use crate::wording::number;
 
 /// Names the obstruction where none of `pairs` has two clear ends, which keep `kept` (m) from everything.
@@ -33,6 +34,17 @@ pub(super) fn broken_ends(pairs: &[EndPair], keeps: &[Keep], robot: &Robot) -> O
     };
     let first = all.first()?;
     Some(format!("{name}: no configuration was found at which holds what is to be kept; there {first}"))
+}
+
+/// Names the joint that cannot hold the arm where none of `pairs` has two ends at which all can; `None` if some have.
+pub(super) fn heavy_ends(pairs: &[EndPair], limits: &ConstantLimits) -> Option<String> {
+    let at_starts = pairs.iter().map(|pair| limits.too_heavy(&pair.start)).collect::<Option<Vec<String>>>();
+    let (name, all) = match at_starts {
+        Some(all) => ("start", all),
+        None => ("end", pairs.iter().map(|pair| limits.too_heavy(&pair.end)).collect::<Option<Vec<String>>>()?),
+    };
+    let first = all.first()?;
+    Some(format!("{name}: no configuration was found at which the joints can hold the arm; there {first}"))
 }
 
 /// Describes the gap `left` between the trees from both ends after `examined` configurations, and what is wrong with the

@@ -82,7 +82,7 @@ impl<'a> TreeSearch<'a> {
         budget: usize,
         deadline: Deadline,
     ) -> Self {
-        let check = LineCheck { clear: SampledLine::new(scene, margin), kept: None };
+        let check = LineCheck { clear: SampledLine::new(scene, margin), kept: None, held: None };
         let groups = Some(joint_groups(scene.robot())).filter(|groups| groups.len() > 1);
         let all = (0..ranges.len()).collect();
         let moves = [all].into_iter().chain(groups.into_iter().flatten()).collect();

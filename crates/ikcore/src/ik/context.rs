@@ -340,6 +340,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
     limits.refuse_tips(&TipField::ALL, "solve", "a single configuration has no motion")?;
+    limits.refuse_torque("solve", "a single configuration has no motion")?;
     let given = limits.position_box()?;
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }

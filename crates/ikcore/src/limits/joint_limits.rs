@@ -6,7 +6,7 @@ use super::field::Field;
 use super::profile::Profile;
 use super::tip_limits::{TipField, TipLimits};
 use crate::error::{Error, Result};
-use crate::message::Message;
+use crate::message::{Message, Setting, message};
 use crate::objective::Bounds;
 use crate::robot::{Joint, Robot};
 
@@ -27,6 +27,8 @@ pub struct Limits {
     pub(super) own_velocity: bool,
     /// Limits of tips.
     tips: TipLimits,
+    /// Torque (N m, N), one per joint; empty without limits.
+    torque: Vec<f64>,
 }
 
 impl Limits {
@@ -42,6 +44,7 @@ impl Limits {
             jerk: None,
             own_velocity: true,
             tips: TipLimits::default(),
+            torque: vec![],
         }
     }
 
@@ -77,6 +80,7 @@ impl Limits {
             jerk: None,
             own_velocity: false,
             tips: TipLimits::default(),
+            torque: vec![],
         }
     }
 
@@ -122,6 +126,44 @@ impl Limits {
         self.tips.of(field)
     }
 
+    /// Replaces the torque limits (N m, N) of all joints, with one number per joint or a single one for all of them; infinite without a limit.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::OutOfRange`] unless they are positive.
+    pub fn with_torque_limit(mut self, mut values: Vec<f64>) -> Result<Self> {
+        let n = self.joints.len();
+        if let [all] = values[..] {
+            values = vec![all; n];
+        }
+        if values.len() != n {
+            let expected = format!("one number, or {n} (one per joint)");
+            return Err(Error::WrongLength { what: "torque limit".into(), expected, got: values.len() });
+        }
+        if let Some(joint) = values.iter().position(|value| !(*value > 0.0)) {
+            let what = format!("torque limit of joint '{}'", self.joints[joint]);
+            return Err(Error::out_of_range(what, "positive", values[joint]));
+        }
+        self.torque = values;
+        Ok(self)
+    }
+
+    /// The torque limits (N m, N), one per joint; empty without any.
+    pub fn torque(&self) -> &[f64] {
+        &self.torque
+    }
+
+    /// Checks that no joint has a torque limit, which `method` does not keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn refuse_torque(&self, method: impl Into<Message>, remedy: impl Into<Message>) -> Result<()> {
+        if !self.torque.iter().any(|limit| limit.is_finite()) {
+            return Ok(());
+        }
+        let remedy = message![remedy.into(), ", or leave out ", Setting::Limit("torque")];
+        Err(Error::UnsupportedLimit { field: "torque".into(), method: method.into(), remedy })
+    }
+
     /// The limits of tips.
     pub(crate) fn tips(&self) -> &TipLimits {
         &self.tips
@@ -143,7 +185,8 @@ impl Limits {
     /// # Errors
     /// None in practice: the limits were checked.
     pub(crate) fn narrowest(&self, from: f64, to: f64) -> Result<Self> {
-        let mut narrowest = Self { tips: self.tips.clone(), ..Self::none(self.joints.clone()) };
+        let mut narrowest =
+            Self { tips: self.tips.clone(), torque: self.torque.clone(), ..Self::none(self.joints.clone()) };
         let ranges: Vec<[f64; 2]> = (0..self.joints.len()).map(|j| self.position_range(j, from, to)).collect();
         let constants = |values: Vec<f64>| values.into_iter().map(Profile::Constant).collect();
         narrowest = narrowest.replace(Field::Lower, constants(ranges.iter().map(|range| range[0]).collect()))?;
@@ -215,9 +258,9 @@ impl Limits {
         self.tips.refuse(fields, method, remedy)
     }
 
-    /// These limits without those of tips.
-    pub(crate) fn without_tips(self) -> Self {
-        Self { tips: TipLimits::default(), ..self }
+    /// These limits without those of tips and torques.
+    pub(crate) fn of_joint_motion(self) -> Self {
+        Self { tips: TipLimits::default(), torque: vec![], ..self }
     }
 
     /// Returns the values of a field, one per joint; empty without such limits. An error if they vary over time, which

@@ -262,12 +262,14 @@ mod tests {
             lambda in prop_oneof![Just(1e-9), Just(0.05), 1e-6..1.0],
         ) {
             let n = columns.len();
-            // Beside a singularity the damping of the plain step counts too.
-            prop_assume!(DMatrix::from_fn(6, n, |i, k| columns[k][i]).singular_values().min() > 0.01);
+            let least = DMatrix::from_fn(6, n, |i, k| columns[k][i]).singular_values().min();
+            prop_assume!(least > 0.01);
+            // The least damping takes this part of an effect along the weakest direction.
+            let damped = LEAST_DAMPING * squared_size(&columns) / least.powi(2);
             let (lower, upper) = (vec![-FREE; n], vec![FREE; n]);
             let (plain, out) = stepped(&weights[..n], &columns, &residual, lambda, [&lower, &upper]);
             let [plain, weighted] = [&plain, &out].map(|dx| effect(&columns, dx));
-            prop_assert!(differs(&plain, &weighted) < 1e-6, "{plain:?} {weighted:?}");
+            prop_assert!(differs(&plain, &weighted) < 1e-6 + 3.0 * damped, "{plain:?} {weighted:?}");
         }
 
         #[test]

@@ -15,6 +15,7 @@
 //! | `joint_weights` | steps by the joints that cost least |
 //! | `ranked_step`, `level_step` | step for two objectives, one before the other; for any number in order |
 //! | `secant` | Jacobian estimated from differences |
+//! | `majorant`, `bernstein` | bounds of Taylor coefficients; polynomials within their control points |
 //! | `one_joint` | time-optimal motions of one joint between two states |
 //! | `polynomial`, `hermite`, `cubic_spline`, `cubic_bspline`, `knots`, `ticks`, `turns`, `sampling_range` | functions of one variable |
 
@@ -38,6 +39,7 @@ mod knots;
 pub(crate) mod ldl;
 pub(crate) mod level_step;
 pub(crate) mod logarithm;
+pub(crate) mod majorant;
 pub mod one_joint;
 pub mod polynomial;
 pub mod pose;

@@ -79,6 +79,8 @@ pub enum Setting {
     Attach,
     /// Removal of the robot's own points from an obstacle of this kind: "PointCloud" or "Grid".
     WithoutRobot(&'static str),
+    /// Inertias of links, given to a robot.
+    Inertias,
     /// Angles that are converted from degrees before a call.
     RadiansFromDegrees,
     /// Angles that a call takes in degrees.
@@ -127,6 +129,7 @@ impl fmt::Display for Setting {
             Self::CapsulesAlongLinks => "with_capsules_along_links",
             Self::Attach => "a robot that carries it",
             Self::WithoutRobot(_) => "without_robot",
+            Self::Inertias => "its links inertias",
             Self::RadiansFromDegrees | Self::AnglesInDegrees => "convert degrees to radians",
         })
     }

@@ -49,9 +49,14 @@ impl Robot {
 
     /// The rows of `qs`, checked to be complete and finite.
     pub(crate) fn rows<'q>(&self, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
+        self.rows_of("joint angles", qs)
+    }
+
+    /// The rows of values of all joints, checked to be complete and finite; `what` names them in the message.
+    pub(super) fn rows_of<'q>(&self, what: &str, qs: &'q [f64]) -> Result<std::slice::ChunksExact<'q, f64>> {
         let n = self.dof();
         if !qs.len().is_multiple_of(n) {
-            let what = format!("joint angles of robot '{}'", self.name());
+            let what = format!("{what} of robot '{}'", self.name());
             return Err(Error::WrongLength {
                 what: what.into(),
                 expected: format!("rows of {n} joints"),
@@ -60,7 +65,7 @@ impl Robot {
         }
         if let Some(i) = qs.iter().position(|value| !value.is_finite()) {
             let place = format!("joint '{}' of configuration {}", self.joints()[i % n].name, i / n);
-            return Err(Error::NotFinite { what: "joint angles".into(), place, value: qs[i] });
+            return Err(Error::NotFinite { what: what.into(), place, value: qs[i] });
         }
         Ok(qs.chunks_exact(n))
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_not_negative};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::wording::{number, words};
@@ -44,6 +44,14 @@ pub struct Joint {
     pub rated_acceleration: f64,
     /// The maker's jerk limit (rad/s^3 or m/s^3), likewise.
     pub rated_jerk: f64,
+    /// The largest torque of its motor (N m, or N for a prismatic joint); infinity where unknown.
+    pub rated_torque: f64,
+    /// Viscous friction (N m s/rad, N s/m), with that of followers as this joint feels it.
+    pub damping: f64,
+    /// Dry friction (N m, N), likewise.
+    pub friction: f64,
+    /// Inertia of the rotor (kg m^2, kg), likewise.
+    pub armature: f64,
 }
 
 /// Rounding beyond a limit, relative to the range of the joint: single precision, and six digits of a file.
@@ -93,8 +101,21 @@ impl Joint {
     pub fn new(name: impl Into<String>, kind: JointKind) -> Self {
         let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
         let velocity = f64::INFINITY;
-        let (rated_acceleration, rated_jerk) = (f64::INFINITY, f64::INFINITY);
-        Self { name: name.into(), kind, lower, upper, velocity, rated_acceleration, rated_jerk }
+        let (rated_acceleration, rated_jerk, rated_torque) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        let (damping, friction, armature) = (0.0, 0.0, 0.0);
+        Self {
+            name: name.into(),
+            kind,
+            lower,
+            upper,
+            velocity,
+            rated_acceleration,
+            rated_jerk,
+            rated_torque,
+            damping,
+            friction,
+            armature,
+        }
     }
 
     /// Copy of the joint between these position limits (rad or m).
@@ -136,6 +157,13 @@ impl Joint {
         ];
         if let Some((side, value, _, requirement)) = limits.into_iter().find(|(_, _, valid, _)| !valid) {
             return Err(Error::out_of_range(format!("{side} limit of joint '{}'", self.name), requirement, value));
+        }
+        for (what, value) in [("damping", self.damping), ("friction", self.friction), ("armature", self.armature)] {
+            require_not_negative(&format!("{what} of joint '{}'", self.name), value)?;
+        }
+        if !(self.rated_torque >= 0.0) {
+            let what = format!("torque limit of joint '{}'", self.name);
+            return Err(Error::out_of_range(what, "zero or more", self.rated_torque));
         }
         let joint = self.name.clone();
         if lower > upper {

@@ -16,6 +16,8 @@
 //! | `upright_axis` | a vertical first axis |
 //! | `mobile_base` | a robot on a base that moves |
 //! | `measured_geometry` | a robot with other transforms and offsets, as a calibration finds them |
+//! | `masses`, `dynamics` | masses of the links, payloads and gravity, folded into moving bodies |
+//! | `torques` | torques, mass matrices and accelerations of one configuration, and of many |
 //! | `manufacturing_errors` | a robot with random manufacturing errors |
 //! | `stance` | named configurations |
 //! | `visual` | how links look |
@@ -30,11 +32,13 @@ mod bodies;
 mod body;
 mod builder;
 mod description;
+mod dynamics;
 mod joint;
 mod kinematics;
 mod link_capsule;
 mod links;
 mod manufacturing_errors;
+mod masses;
 mod measured_geometry;
 mod mobile_base;
 mod model;
@@ -48,6 +52,7 @@ mod serialization;
 mod stance;
 mod tip_chain;
 mod tips;
+mod torques;
 mod upright_axis;
 mod visual;
 mod wrapped;
@@ -61,9 +66,12 @@ pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
 pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
+pub use masses::LinkInertia;
+pub(crate) use masses::{InertiaFault, Masses};
 pub use mobile_base::{BaseLimits, MobileBase};
 pub use model::Robot;
 pub use stance::Stance;
+pub use torques::Motions;
 pub use upright_axis::UprightAxis;
 pub use visual::{Visual, VisualShape};
 

@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 use super::body::Bodies;
 use super::description::{Description, Element};
 use super::joint::Joint;
+use super::masses::Masses;
 use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::parts::Parts;
@@ -18,6 +19,7 @@ use crate::bodies::BodyModel;
 use crate::closed_form::{
     ArmBranches, ArmConfigurations, ClosedFormArm, NoClosedForm, PoseFamily, PositionArm, SEEDS, Seed,
 };
+use crate::dynamics::Dynamics;
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::chain::{Chain, Transmission};
@@ -64,6 +66,8 @@ pub struct Robot {
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
     /// Decided at first use; copies that differ in base and tool share it.
     position_arm: Arc<OnceLock<Option<PositionArm>>>,
+    /// Bodies with their masses, or the reason why there are none; found at first use.
+    dynamics: OnceLock<Arc<Result<Dynamics>>>,
 }
 
 /// The elements that move one of several tips alone, from the end of those that it shares with others.
@@ -106,6 +110,7 @@ impl Robot {
             task_rank: OnceLock::new(),
             closed_form: Arc::default(),
             position_arm: Arc::default(),
+            dynamics: OnceLock::new(),
         })
     }
 
@@ -386,6 +391,18 @@ impl Robot {
         let mut robot = self.clone();
         robot.parts.visuals = visuals;
         robot
+    }
+
+    /// Copy of the robot with other masses.
+    pub(crate) fn with_masses(&self, masses: Masses) -> Self {
+        let mut robot = self.clone();
+        robot.parts.masses = Arc::new(masses);
+        robot.dynamics = OnceLock::new();
+        robot
+    }
+
+    pub(super) fn found_dynamics(&self) -> &OnceLock<Arc<Result<Dynamics>>> {
+        &self.dynamics
     }
 
     /// Bodies and pairs, prepared for distances; made at the first call, and shared with copies that have the same.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::Bodies;
 use super::description::Description;
+use super::masses::Masses;
 use super::off_chain::OffChain;
 use super::pair_rule::PairRule;
 use super::stance::Stance;
@@ -32,6 +33,7 @@ pub(crate) struct Parts {
     /// Links of further tips, beside that at the end of the chain.
     pub tips: Vec<String>,
     pub visuals: Vec<Visual>,
+    pub masses: Arc<Masses>,
 }
 
 impl Parts {
@@ -49,6 +51,7 @@ impl Parts {
             stances: vec![],
             tips: vec![],
             visuals: vec![],
+            masses: Arc::default(),
         }
     }
 

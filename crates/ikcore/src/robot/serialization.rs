@@ -2,7 +2,7 @@
 
 use super::model::Robot;
 use super::parts::Parts;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require_finite};
 use crate::message::with_article;
 use crate::stored;
 
@@ -24,6 +24,11 @@ impl Robot {
         for visual in robot.visuals() {
             robot.link_number(&visual.link)?;
         }
+        for known in robot.inertias().iter().chain(robot.payloads()) {
+            robot.link_number(&known.link)?;
+            known.inertia.require_possible(&format!("inertia of link '{}'", known.link))?;
+        }
+        require_finite("gravity", &robot.gravity(), |i| format!("entry {i}"))?;
         for body in robot.bodies() {
             robot.link_number(&body.link)?;
             if !body.shape.can_be_carried() {

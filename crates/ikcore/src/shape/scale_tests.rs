@@ -95,7 +95,7 @@ fn block(body: &PosedBody) -> BodyBlock {
 fn what_contains_a_body_is_near_at_every_size_and_place() {
     let mut rng = rng::stream(1, 0);
     let mut count = 0;
-    for case in 0..700 {
+    for case in 0..300 {
         let far = if case % 4 == 0 { 0.0 } else { length(&mut rng) };
         let way =
             [Vector3::x(), Vector3::repeat(-1.0), Vector3::from_fn(|_, _| rng.uniform_in(-1.0, 1.0))][rng.below(3)];
@@ -120,7 +120,7 @@ fn what_contains_a_body_is_near_at_every_size_and_place() {
             });
         }
     }
-    assert!(count > 40_000, "{count}");
+    assert!(count > 17_000, "{count}");
 }
 
 #[test]

@@ -1,17 +1,18 @@
 //! Constant limits of each joint, for planners and timings.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::joint_path::JointPath;
 use super::violation::Violation;
-use crate::constraint::{TIGHT, TipExcess, TipRates};
+use crate::constraint::{HoldCheck, JointTorques, TIGHT, TipExcess, TipRates, TooHeavy, TorqueExcess};
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
 use crate::trajectory::Trajectory;
-use crate::wording::named_joints;
+use crate::wording::{named_joints, number};
 
 /// Constant limits of each joint (n,); infinite if there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,8 @@ pub struct ConstantLimits {
     pub(crate) jerk: Vec<f64>,
     /// Limits of the tips of the robot.
     pub(super) tips: Option<TipRates>,
+    /// Limits of the torques of its joints.
+    pub(super) torques: Option<JointTorques>,
     /// Names, and kinds where a robot is known.
     joints: Vec<(String, Option<JointKind>)>,
 }
@@ -42,6 +45,7 @@ impl ConstantLimits {
         let method = method.into();
         let remedy = "when a point of the path is passed is what it looks for; give numbers";
         limits.refuse_tips(&TipField::ALL, method.clone(), "give the robot whose tips they are")?;
+        limits.refuse_torque(method.clone(), "give the robot whose motors they are")?;
         let joints = limits.joint_names().iter().map(|name| (name.clone(), None)).collect();
         let limits = Self::read(limits, joints, method.clone(), remedy)?;
         limits.require_accelerations(method)?;
@@ -72,12 +76,13 @@ impl ConstantLimits {
         let joints = robot.joints().iter().map(|joint| (joint.name.clone(), Some(joint.kind))).collect();
         let method = method.into();
         let tips = TipRates::new(robot, limits.tips(), method.clone())?;
+        let torques = JointTorques::new(robot, limits.torque(), method.clone())?;
         let constant = Self::read(&limits, joints, method, "give numbers")?;
         limits.require_unlocked()?;
         let farthest = constant.lower.iter().zip(&constant.upper).map(|(lower, upper)| lower.abs().max(upper.abs()));
         let farthest: Vec<f64> = farthest.collect();
         let tips = tips.and_then(|tips| tips.without_idle([&constant.velocity, &farthest]));
-        Ok(Self { tips, ..constant })
+        Ok(Self { tips, torques, ..constant })
     }
 
     fn read(limits: &Limits, joints: Vec<(String, Option<JointKind>)>, method: Message, remedy: &str) -> Result<Self> {
@@ -94,6 +99,7 @@ impl ConstantLimits {
             acceleration: constants(Field::Acceleration)?,
             jerk: constants(Field::Jerk)?,
             tips: None,
+            torques: None,
             joints,
         })
     }
@@ -193,6 +199,33 @@ impl ConstantLimits {
     pub(crate) fn refuse_tips(&self, method: impl Into<Message>) -> Result<()> {
         let remedy = message!["add them with ", Setting::Retime];
         self.tips.as_ref().map_or(Ok(()), |tips| tips.limits().refuse(&TipField::ALL, method, remedy))
+    }
+
+    /// Whether any joint has a torque limit.
+    pub(crate) fn limit_torque(&self) -> bool {
+        self.torques.is_some()
+    }
+
+    /// These limits without those of torques.
+    pub(super) fn without_torque(&self) -> Cow<'_, Self> {
+        if self.torques.is_none() { Cow::Borrowed(self) } else { Cow::Owned(Self { torques: None, ..self.clone() }) }
+    }
+
+    /// Checks that no joint has a torque limit, which `method` cannot keep.
+    ///
+    /// # Errors
+    /// [`Error::UnsupportedLimit`].
+    pub(crate) fn refuse_torque(&self, method: impl Into<Message>) -> Result<()> {
+        if self.torques.is_none() {
+            return Ok(());
+        }
+        let remedy = message!["add them with ", Setting::Retime];
+        Err(Error::UnsupportedLimit { field: "torque".into(), method: method.into(), remedy })
+    }
+
+    /// Unit of the torque of a joint.
+    pub(crate) fn torque_unit(&self, joint: usize) -> &'static str {
+        if self.joints[joint].1.is_none_or(JointKind::turns) { "N m" } else { "N" }
     }
 
     /// Unit of the acceleration of a joint.
@@ -352,25 +385,79 @@ impl ConstantLimits {
                 }
             }
         }
-        let excesses = self.tips.iter().flat_map(|tips| tips.excesses(trajectory));
-        found.extend(excesses.map(|TipExcess { what, value, bound, unit }| Violation {
+        let of_tips = self.tips.iter().flat_map(|tips| tips.excesses(trajectory));
+        found.extend(of_tips.map(|TipExcess { what, value, bound, unit }| Violation {
             what,
             value,
             bound,
             unit: unit.into(),
         }));
+        let of_torques = self.torques.iter().flat_map(|torques| torques.excesses(trajectory));
+        found.extend(of_torques.map(|TorqueExcess { joint, value, bound }| Violation {
+            what: format!("torque of joint '{}'", self.joint_name(joint)),
+            value,
+            bound,
+            unit: self.torque_unit(joint).into(),
+        }));
         found
     }
 
-    /// Whether `motion` keeps the limits of tips.
-    pub(crate) fn keep_tips(&self, motion: &Trajectory) -> bool {
-        self.tips.as_ref().is_none_or(|tips| tips.slowdown(motion, 1.0 + ROUNDING) <= 1.0 + ROUNDING)
+    /// Whether the motion of the robot as a whole is limited: that of its tips, or the torques of its joints.
+    pub(crate) fn limit_whole(&self) -> bool {
+        self.tips.is_some() || self.torques.is_some()
     }
 
-    /// Slows `motion` down as a whole where it exceeds the limits of tips.
-    pub(super) fn within_tip_limits(&self, motion: Trajectory) -> Result<Trajectory> {
-        let Some(tips) = &self.tips else { return Ok(motion) };
-        let factor = tips.slowdown(&motion, 1.0);
-        if factor <= 1.0 { Ok(motion) } else { motion.slowed(factor * (1.0 + TIGHT)) }
+    /// Whether `motion` keeps the limits of torques.
+    pub(crate) fn keep_torque(&self, motion: &Trajectory) -> bool {
+        let most = 1.0 + ROUNDING;
+        self.torques.as_ref().is_none_or(|torques| torques.slowdown(motion, most) <= most)
+    }
+
+    /// Whether `motion` keeps the limits of tips and of torques.
+    pub(crate) fn keep_whole(&self, motion: &Trajectory) -> bool {
+        self.whole_slowdown(motion, 1.0 + ROUNDING) <= 1.0 + ROUNDING
+    }
+
+    /// Factor by which `motion` must be slowed down to keep the limits of tips and of torques, or a bound of it up to `enough`; infinite where
+    /// a joint cannot hold the arm.
+    pub(super) fn whole_slowdown(&self, motion: &Trajectory, enough: f64) -> f64 {
+        let of_tips = self.tips.as_ref().map_or(0.0, |tips| tips.slowdown(motion, enough));
+        let of_torques = self.torques.as_ref().map_or(0.0, |torques| torques.slowdown(motion, enough.max(of_tips)));
+        of_tips.max(of_torques)
+    }
+
+    /// Slows `motion` down as a whole where it exceeds the limits of tips or of torques. One on which a joint cannot hold the arm stays as it is.
+    pub(super) fn slowed_as_a_whole(&self, motion: Trajectory) -> Result<Trajectory> {
+        if !self.limit_whole() {
+            return Ok(motion);
+        }
+        let factor = self.whole_slowdown(&motion, 1.0);
+        if factor <= 1.0 || factor.is_infinite() {
+            return Ok(motion);
+        }
+        motion.slowed(factor * (1.0 + TIGHT))
+    }
+
+    /// Checks whether joints can hold the arm along lines; `None` without torque limits.
+    pub(crate) fn hold_check(&self) -> Option<HoldCheck<'_>> {
+        self.torques.as_ref().map(HoldCheck::new)
+    }
+
+    /// Returns why a joint cannot hold the arm at `q` (n,), if one cannot.
+    pub(crate) fn too_heavy(&self, q: &[f64]) -> Option<String> {
+        let torques = self.torques.as_ref()?;
+        let TooHeavy { joint, torque, limit } = torques.too_heavy(&mut torques.point(), q)?;
+        let (name, unit) = (self.joint_name(joint), self.torque_unit(joint));
+        let [torque, limit] = [torque.abs(), limit].map(number);
+        Some(format!("joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}"))
+    }
+
+    /// Checks that a slowdown is finite.
+    pub(super) fn require_holdable(&self, factor: f64) -> Result<()> {
+        if factor.is_finite() {
+            return Ok(());
+        }
+        let problem = "a joint cannot hold the arm on the way, however slowly it moves".into();
+        Err(Error::Infeasible { problem })
     }
 }

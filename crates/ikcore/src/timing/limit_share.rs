@@ -30,6 +30,10 @@ impl ConstantLimits {
             ];
             shares.extend(uses.map(|(name, value, limit)| (OneLimit::Joint(joint, name), value.abs() / limit)));
         }
+        if let Some(torques) = &self.torques {
+            let of_joints = torques.shares(polynomials, elapsed).into_iter().enumerate();
+            shares.extend(of_joints.map(|(joint, used)| (OneLimit::Joint(joint, "torque"), used)));
+        }
         if let Some(tips) = &self.tips {
             shares
                 .extend(tips.shares(polynomials, elapsed).map(|(tip, field, used)| (OneLimit::Tip(tip, field), used)));

@@ -56,13 +56,13 @@ impl JointPolyline {
         self.paced(self.with_quintics(limits)?, limits)
     }
 
-    /// Returns `motion`, made for these lines, within the limits of tips: slowed down as a whole or, if accelerations may jump, the fastest motion
+    /// Returns `motion`, made for these lines, within the limits of tips and torques: slowed down as a whole or, if accelerations may jump, the fastest motion
     /// along the lines, which slows down where they bind. Neither is faster than `motion`, so that looser limits are never slower.
     fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
-        if limits.tips.is_none() {
+        if !limits.limit_whole() {
             return Ok(motion);
         }
-        let slowed = limits.within_tip_limits(motion.clone())?;
+        let slowed = limits.slowed_as_a_whole(motion.clone())?;
         if slowed == motion || limits.limit_jerk() || limits.require_accelerations("lines").is_err() {
             return Ok(slowed);
         }
@@ -115,10 +115,10 @@ impl JointPolyline {
     /// s): continuous, never beyond either velocity, and inside the triangle that the lines span.
     pub(crate) fn with_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
         let motion = self.with_free_blends(limits, fractions)?;
-        Some(motion.and_then(|motion| limits.within_tip_limits(motion)))
+        Some(motion.and_then(|motion| limits.slowed_as_a_whole(motion)))
     }
 
-    /// [`with_blends`](Self::with_blends) without regard to tips.
+    /// [`with_blends`](Self::with_blends) without regard to tips and torques.
     fn with_free_blends(&self, limits: &ConstantLimits, fractions: &[f64]) -> Option<Result<Trajectory>> {
         let times = self.blend_times(limits, fractions)?;
         let motion = self.blended(limits, &times);

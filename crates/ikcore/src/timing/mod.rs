@@ -10,8 +10,10 @@
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
+//! | `bounding_line` | lines that bound the acceleration along the path |
 //! | `strips` | the acceleration limits |
 //! | `tip_segments` | the limits of tips over segments |
+//! | `torque_segments` | the limits of joint torques over segments |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
 //! | `compose` | speed profile to trajectory |
@@ -22,6 +24,7 @@
 //! | `limit_share` | how much of each limit a motion uses |
 //! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
 
+mod bounding_line;
 mod compose;
 mod constant_limits;
 mod derivatives;
@@ -40,6 +43,7 @@ mod strips;
 mod time_optimal;
 mod time_scaling;
 mod tip_segments;
+mod torque_segments;
 mod tube;
 mod velocity_curve;
 mod violation;

@@ -5,12 +5,16 @@
 //! method on the width of the interval that the strips leave for u, which is concave and piecewise linear in x: it
 //! converges from outside in a few steps, exactly.
 
+use std::rc::Rc;
+
+use super::bounding_line::Line;
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
-use super::strips::{Line, Strips};
+use super::strips::Strips;
 use super::tip_segments::TipSegments;
+use super::torque_segments::{KnownTorques, TorqueBounds, torque_bounds};
 use super::velocity_curve::maximum_velocity_curve;
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
@@ -27,15 +31,16 @@ pub(super) struct SpeedProfile {
 }
 
 impl SpeedProfile {
-    /// Computes the fastest profile on these `segments` that starts and ends in these ranges.
+    /// Computes the fastest profile on these `segments` that starts and ends in these ranges; `known` keeps what other grids can use.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] if the speeds at the ends are not possible.
+    /// [`Error::Infeasible`] if the speeds at the ends are not possible, or a joint cannot hold the arm.
     pub(super) fn fastest(
         path: &JointPath,
         limits: &ConstantLimits,
         segments: Vec<Segment>,
         [start, end]: [Range; 2],
+        known: &mut KnownTorques,
     ) -> Result<Self> {
         let mut derivatives = PathDerivatives::new(path.joints().len());
         let mut strips = Strips::new(path.joints().len());
@@ -43,8 +48,9 @@ impl SpeedProfile {
         let tips = limits.tips.as_ref().map(|rates| TipSegments::new(path, &segments, rates)).transpose()?;
         let velocity_curve = maximum_velocity_curve(path, limits, &segments, tips.as_ref(), &mut derivatives);
         let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
+        let torques = torque_bounds(path, &segments, &velocity_curve, limits, known)?;
         let (derivatives, strips, segments_of) = (&mut derivatives, &mut strips, &segments[..]);
-        let mut pass = Pass { path, limits, segments: segments_of, tips, derivatives, strips };
+        let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
         Ok(Self { segments, squared_speeds })
@@ -68,6 +74,8 @@ struct Pass<'a> {
     segments: &'a [Segment],
     /// Tips whose acceleration is limited.
     tips: Option<TipSegments<'a>>,
+    /// Bounds of torques by segment; empty without.
+    torques: Vec<Rc<TorqueBounds>>,
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
 }
@@ -80,6 +88,9 @@ impl Pass<'_> {
         self.strips.fill(self.derivatives, segment.length, self.limits);
         if let Some(tips) = &self.tips {
             self.strips.add(tips, i);
+        }
+        if let Some(torques) = self.torques.get(i) {
+            self.strips.bound(torques);
         }
         segment
     }

@@ -14,7 +14,7 @@ const WORTHWHILE: f64 = 0.2;
 /// Returns the fastest profile on a grid that starts with `segments` and is halved wherever that saves time.
 pub(super) fn refine(
     segments: Vec<Segment>,
-    fastest: impl Fn(Vec<Segment>) -> Result<SpeedProfile>,
+    mut fastest: impl FnMut(Vec<Segment>) -> Result<SpeedProfile>,
 ) -> Result<SpeedProfile> {
     let mut halve = vec![true; segments.len()];
     let mut profile = fastest(segments)?;

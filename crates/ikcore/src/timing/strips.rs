@@ -1,47 +1,34 @@
 //! The acceleration limits over one segment, in the plane of x = (ds/dt)^2 at its start and u = d2s/dt2 on it.
 //!
-//! Each limit is a strip |a u + b x| <= c. For a given x the strips leave an interval of u, between the lowest of their
+//! Each limit of an acceleration is a strip |a u + b x| <= c; those of joint torques are half-planes. For a given x the strips leave an interval of u, between the lowest of their
 //! upper lines and the highest of their lower lines. Both envelopes are piecewise linear; the interval between them is
 //! convex.
 
+use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::tip_segments::TipSegments;
-
-/// The line u = offset - slope x.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
-    pub offset: f64,
-    pub slope: f64,
-}
-
-impl Line {
-    #[inline]
-    pub(super) fn at(self, x: f64) -> f64 {
-        self.offset - self.slope * x
-    }
-}
+use super::torque_segments::TorqueBounds;
 
 /// Strips, each given by its upper line. The lower line is parallel and has the negative offset.
 #[derive(Debug, Default)]
 pub(super) struct Strips {
     offsets: Vec<f64>,
     slopes: Vec<f64>,
+    /// Lines that bound u from above and from below, not in pairs.
+    bounds: [Vec<Line>; 2],
     /// The bound on x from strips that do not bound u.
     pub largest_x: f64,
     /// The largest u from rest.
     pub launch: f64,
 }
 
-/// A coefficient of u below this fraction of the largest counts as zero: its line would be so steep that it is mostly
-/// rounding, and it hardly bounds u.
-const NEGLIGIBLE_SLOPE: f64 = 1e-9;
-
 impl Strips {
     pub(super) fn new(joints: usize) -> Self {
         Self {
             offsets: vec![0.0; 3 * joints],
             slopes: vec![0.0; 3 * joints],
+            bounds: [vec![], vec![]],
             largest_x: f64::INFINITY,
             launch: f64::INFINITY,
         }
@@ -55,6 +42,7 @@ impl Strips {
         let n = limits.acceleration.len();
         self.offsets.truncate(3 * n);
         self.slopes.truncate(3 * n);
+        self.bounds.iter_mut().for_each(Vec::clear);
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
         let (offsets, slopes) = (&mut self.offsets[..3 * n], &mut self.slopes[..3 * n]);
@@ -94,6 +82,13 @@ impl Strips {
         });
     }
 
+    /// Adds the bounds of joint torques.
+    pub(super) fn bound(&mut self, TorqueBounds { lines, largest_x }: &TorqueBounds) {
+        self.largest_x = self.largest_x.min(*largest_x);
+        self.launch = lines[0].iter().map(|line| line.offset).fold(self.launch, f64::min);
+        self.bounds.iter_mut().zip(lines).for_each(|(all, more)| all.extend_from_slice(more));
+    }
+
     /// The lowest upper line at `x`.
     pub(super) fn upper(&self, x: f64) -> Line {
         self.tightest(x)[0]
@@ -110,6 +105,17 @@ impl Strips {
             }
             if -offset - middle > lower.0 {
                 lower = (-offset - middle, Line { offset: -offset, slope });
+            }
+        }
+        let [above, below] = &self.bounds;
+        for line in above {
+            if line.at(x) < upper.0 {
+                upper = (line.at(x), *line);
+            }
+        }
+        for line in below {
+            if line.at(x) > lower.0 {
+                lower = (line.at(x), *line);
             }
         }
         [upper.1, lower.1]

@@ -8,6 +8,7 @@ use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
 use super::time_scaling::within_limits;
+use super::torque_segments::KnownTorques;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
@@ -46,7 +47,8 @@ pub fn time_optimal(path: &JointPath, limits: &ConstantLimits, options: &TimingO
 pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
-    let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends);
+    let mut known = KnownTorques::default();
+    let mut fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends, &mut known);
     let profile = match options.gridpoints {
         Some(gridpoints) => {
             check_gridpoints(gridpoints)?;
@@ -80,27 +82,32 @@ pub(crate) fn time_all(paths: &[JointPath], limits: &ConstantLimits) -> Result<T
     motions.try_fold(first, |all, next| all.then(&next?, 0.0))
 }
 
-/// Returns the duration (s) of a fast motion under jerk limits along `paths`, each from rest to rest: one that [`time_all`] improves little.
+/// Returns the duration (s) of a fast motion under jerk limits, without those of torques, along `paths`, each from rest to rest: one that
+/// [`time_all`] improves little.
 ///
 /// # Errors
 /// As [`time_all`].
 pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Result<f64> {
+    let limits = &limits.without_torque();
     let of_path = |path: &JointPath| {
         let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-        let profile = SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends)?;
+        let profile =
+            SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends, &mut KnownTorques::default())?;
         Ok(jerk_limited::rough(path, &profile, limits)?.duration())
     };
     paths.iter().map(of_path).sum()
 }
 
 /// Returns the duration (s) of the fastest motion from rest to rest on a grid of about `segments` segments: a quick
-/// estimate to compare many paths. Position limits are left to the caller.
+/// estimate to compare many paths, without torque limits. Position limits are left to the caller.
 ///
 /// # Errors
 /// None in practice: a motion from rest to rest always exists.
 pub(crate) fn coarse_duration(path: &JointPath, limits: &ConstantLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-    SpeedProfile::fastest(path, limits, cut(path, segments), ends).map(|profile| profile.duration())
+    let profile =
+        SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends, &mut KnownTorques::default())?;
+    Ok(profile.duration())
 }
 
 /// Returns the range of squared path speeds for a joint speed at an end. If dq/ds vanishes, the joints are at rest at

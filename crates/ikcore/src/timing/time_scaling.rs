@@ -27,8 +27,8 @@ impl ConstantLimits {
         let extremes = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
         let of_joint = |j: usize| self.joint_slowdown(j, extremes.each_ref().map(|of| of[j]));
         let of_joints = (0..self.dof()).map(of_joint).fold(0.0, f64::max);
-        let of_tips = self.tips.as_ref().map_or(0.0, |tips| tips.slowdown(motion, of_joints));
-        if of_tips > of_joints { of_tips * (1.0 + TIGHT) } else { of_joints }
+        let of_whole = if self.limit_whole() { self.whole_slowdown(motion, of_joints) } else { 0.0 };
+        if of_whole > of_joints { of_whole * (1.0 + TIGHT) } else { of_joints }
     }
 
     /// Slowdown factor of one joint with these velocity, acceleration and jerk: the k-th derivative scales with the
@@ -47,16 +47,17 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Tra
         refuse_jumps(motion, limits)?;
     }
     let factor = limits.slowdown(motion);
+    limits.require_holdable(factor)?;
     if factor == 0.0 {
         return Err(no_pace(&[limits.joint_name(0)], ""));
     }
     within_limits(motion.slowed(factor * CAUTION)?, limits)
 }
 
-/// Slows a motion from rest to rest where it exceeds the limits of tips, or where the rounding of its times makes it exceed
+/// Slows a motion from rest to rest where it exceeds the limits of tips or torques, or where the rounding of its times makes it exceed
 /// those on velocity, acceleration and jerk of its joints.
 pub(super) fn within_limits(motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
-    let mut motion = limits.within_tip_limits(motion)?;
+    let mut motion = limits.slowed_as_a_whole(motion)?;
     let shortest = motion.knots().windows(2).map(|ends| ends[1] - ends[0]).fold(f64::INFINITY, f64::min);
     if shortest > SHORT * motion.duration() {
         return Ok(motion);

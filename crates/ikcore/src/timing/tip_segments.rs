@@ -71,7 +71,8 @@ impl<'a> TipSegments<'a> {
         let polynomials = (0..path.joints().len()).map(|j| polynomial(powers.map(|power| power[j])));
         let robot = self.rates.robot();
         at.set(robot, polynomials, [segment.from + middle, half]);
-        let jets: smallvec::SmallVec<[TipJet; 4]> = self.rates.tips().iter().map(|tip| at.jet(robot, tip)).collect();
+        let jets: smallvec::SmallVec<[TipJet; 4]> =
+            self.rates.tips().iter().map(|tip| at.jet(robot, &tip.elements)).collect();
         let is_exact = |jet: &VectorJet| jet.rest <= NEGLIGIBLE * jet.size;
         if depth == DEEPEST || jets.iter().all(|jet| is_exact(&jet.velocity) && is_exact(&jet.turn)) {
             self.jets.extend(jets.into_iter().enumerate().map(|(tip, jet)| PathJet { tip, middle, half, jet }));

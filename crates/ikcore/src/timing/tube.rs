@@ -6,7 +6,6 @@ use super::joint_path::{JointPath, POWERS};
 use super::least_bending::{AIM, Fit, local};
 use crate::error::Result;
 use crate::interrupt::{checkpoint, checkpoint_at};
-use crate::limits::ROUNDING;
 use crate::math::cubic_bspline::CubicBasis;
 use crate::math::polynomial::largest_magnitude;
 
@@ -51,14 +50,14 @@ impl<'a> Tube<'a> {
     }
 
     /// Returns the smooth path with the fewest pieces, doubled from `pieces`, within `tolerance` (rad, m) of the path in each
-    /// joint; also their number. `None` if more pieces than samples would be needed, or if nothing is left of the motion.
+    /// joint; also their number. `None` if more pieces than samples would be needed.
     ///
     /// # Errors
     /// [`crate::Error::Interrupted`].
     pub(super) fn smoothest(&self, tolerance: &[f64], mut pieces: usize) -> Result<Option<(JointPath, usize)>> {
         while pieces <= self.at.len() / 2 {
             if let Some(smooth) = self.with_pieces(tolerance, pieces)? {
-                return Ok((!is_a_point(&smooth)).then_some((smooth, pieces)));
+                return Ok(Some((smooth, pieces)));
             }
             pieces *= 2;
         }
@@ -155,11 +154,4 @@ impl<'a> Tube<'a> {
 fn powers_from(path: &JointPath, piece: usize, from: f64, joint: usize) -> [f64; POWERS] {
     let [value, first, second] = path.joint_at(piece, from - path.breaks()[piece], joint);
     [value, first, 0.5 * second, path.powers(piece)[3][joint]]
-}
-
-fn is_a_point(path: &JointPath) -> bool {
-    (0..path.joints().len()).all(|joint| {
-        let [lowest, highest] = path.range(joint);
-        highest - lowest <= ROUNDING * lowest.abs().max(1.0)
-    })
 }

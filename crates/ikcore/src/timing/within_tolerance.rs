@@ -8,6 +8,7 @@ use super::joint_path::JointPath;
 use super::time_optimal::{TimingOptions, coarse_duration, time, time_optimal};
 use super::tube::Tube;
 use crate::error::{Error, Result};
+use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
 /// Widths of tubes are powers of this number.
@@ -58,18 +59,16 @@ impl Fastest<'_> {
     /// Tries the smoothest paths in tubes of the tolerance, and of narrower ones.
     fn try_tubes(&mut self, path: &JointPath, tolerance: &[f64]) -> Result<()> {
         let tube = Tube::new(path, self.limits);
-        let widest = tolerance.iter().map(|tolerance| WIDTH_RATIO.powf(tolerance.log(WIDTH_RATIO).floor()));
-        let (widest, mut pieces) = (widest.collect::<Vec<f64>>(), 1);
+        let (widest, mut pieces) = (widest(path, tolerance), 1);
         for width in 0..WIDTHS {
             let tolerance: Vec<f64> = widest.iter().map(|widest| widest * WIDTH_RATIO.powi(-width)).collect();
-            let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else {
-                if width == 0 || pieces > 1 {
-                    break;
-                }
-                continue;
-            };
+            // Narrower tubes would need more pieces still.
+            let Some((smooth, needed)) = tube.smoothest(&tolerance, pieces)? else { break };
             pieces = needed;
-            self.try_path(&smooth)?;
+            // A tube wider than the motion leaves nothing of it.
+            if !is_a_point(&smooth) {
+                self.try_path(&smooth)?;
+            }
         }
         Ok(())
     }
@@ -92,6 +91,21 @@ impl Fastest<'_> {
         }
         Ok(())
     }
+}
+
+/// The widest tubes to try: `tolerance`, or less where it exceeds the range of every joint.
+fn widest(path: &JointPath, tolerance: &[f64]) -> Vec<f64> {
+    let ranges = (0..tolerance.len()).map(|joint| path.range(joint)).map(|[lowest, highest]| highest - lowest);
+    let excess = tolerance.iter().zip(ranges).map(|(tolerance, range)| tolerance / range).fold(f64::INFINITY, f64::min);
+    let excess = if excess.is_finite() { excess.max(1.0) } else { 1.0 };
+    tolerance.iter().map(|tolerance| WIDTH_RATIO.powf((tolerance / excess).log(WIDTH_RATIO).floor())).collect()
+}
+
+fn is_a_point(path: &JointPath) -> bool {
+    (0..path.joints().len()).all(|joint| {
+        let [lowest, highest] = path.range(joint);
+        highest - lowest <= ROUNDING * lowest.abs().max(1.0)
+    })
 }
 
 /// Whether a motion along a path would take longer than `best` without jerk limits, judged by a rough timing.

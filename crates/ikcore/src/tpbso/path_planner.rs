@@ -24,6 +24,7 @@ pub(crate) fn along_path(
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.refuse_tips(METHOD)?;
+    limits.refuse_torque(METHOD)?;
     limits.require_velocities(METHOD)?;
     let start = options.start.as_deref();
     let elbow = start.map_or_else(|| tpbso.elbow_along_path(), |q| Ok(arm.elbow(q)))?;

@@ -23,6 +23,7 @@ pub(crate) fn point_to_point(
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.refuse_jerk(METHOD)?;
     limits.refuse_tips(METHOD)?;
+    limits.refuse_torque(METHOD)?;
     limits.require_velocities(METHOD)?;
     let collisions = space.map(|space| CollisionTest::new(space, robot));
     let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {

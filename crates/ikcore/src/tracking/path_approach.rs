@@ -64,7 +64,7 @@ impl PathApproach {
                 let ticks = i - 1;
                 let met = moving(before, there, after, dt);
                 let time = asked.time(ticks);
-                let within = limits.narrowest(0.0, time)?.without_tips();
+                let within = limits.narrowest(0.0, time)?.of_joint_motion();
                 if let Some(trajectory) = meet(&ArmState::at_rest(start), &met, &within, time)
                     && tips.as_ref().is_none_or(|tips| tips.slowdown(&trajectory, 1.0) <= 1.0)
                 {

@@ -1,5 +1,7 @@
 //! The polynomial of one joint in one segment.
 
+use crate::math::bernstein::choose;
+
 /// Number of coefficients of a segment. Degree 6 is needed for a cubic in a path parameter that is a parabola in time.
 pub const POWERS: usize = 7;
 
@@ -29,4 +31,13 @@ pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
         power += 1;
     }
     padded
+}
+
+/// Bounds of the first `N` Taylor coefficients of the derivative of a polynomial, at every point of \[-1, 1\].
+pub(crate) fn derivative_bounds<const N: usize>(polynomial: &Coefficients) -> [f64; N] {
+    std::array::from_fn(|k| {
+        let powers = polynomial.iter().enumerate().skip(k + 1);
+        let sum: f64 = powers.map(|(power, c)| choose(power, k + 1) as f64 * c.abs()).sum();
+        (k + 1) as f64 * sum
+    })
 }

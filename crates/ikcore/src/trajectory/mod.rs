@@ -8,5 +8,6 @@ mod hermite_segment;
 mod piecewise;
 mod sequence;
 
+pub(crate) use coefficients::derivative_bounds;
 pub use coefficients::{Coefficients, POWERS, polynomial};
 pub use piecewise::Trajectory;

@@ -24,6 +24,9 @@ use crate::traversal::traversed;
 ///     tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
 ///         origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
 ///         limit. Planned motions keep them at every instant, not only at samples.
+///     torque: limits of the torques of the joints (N m, N), a number or (n,); `robot.torque_limit` has those of the robot's file. None: not
+///         limited. Planned motions keep them at every instant, with the masses, payload, gravity and friction of the robot; they do not
+///         count on friction where it would help.
 ///
 /// Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
 /// are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
@@ -45,6 +48,8 @@ pub struct PyLimits {
     given: [Option<GivenLimit>; 5],
     /// Given limits of tips, in the order of [`TipField::ALL`].
     tips: [Option<GivenTips>; 3],
+    /// Given torque limits.
+    torque: Option<PerJoint>,
 }
 
 traversed!(PyLimits: given);
@@ -57,7 +62,7 @@ const FIELDS: [Field; 5] = [Field::Lower, Field::Upper, Field::Velocity, Field::
 impl PyLimits {
     #[new]
     #[pyo3(signature = (*, lower=None, upper=None, velocity=None, acceleration=None, jerk=None, tip_speed=None,
-                        tip_acceleration=None, tip_turn_speed=None))]
+                        tip_acceleration=None, tip_turn_speed=None, torque=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         lower: Option<&Bound<'_, PyAny>>,
@@ -68,6 +73,7 @@ impl PyLimits {
         tip_speed: Option<&Bound<'_, PyAny>>,
         tip_acceleration: Option<&Bound<'_, PyAny>>,
         tip_turn_speed: Option<&Bound<'_, PyAny>>,
+        torque: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut given = [const { None }; 5];
         for ((slot, field), value) in given.iter_mut().zip(FIELDS).zip([lower, upper, velocity, acceleration, jerk]) {
@@ -85,7 +91,7 @@ impl PyLimits {
         for ((slot, field), value) in tips.iter_mut().zip(TipField::ALL).zip(of_tips) {
             *slot = value.map(|value| GivenTips::read(field, value)).transpose()?;
         }
-        Ok(Self { given, tips })
+        Ok(Self { given, tips, torque: torque.map(torque_limit).transpose()? })
     }
 
     /// Lower position limits (rad, m), as given.
@@ -136,6 +142,12 @@ impl PyLimits {
         self.show_tips(py, TipField::TurnSpeed)
     }
 
+    /// Limits of the torques of the joints (N m, N), as given.
+    #[getter]
+    fn torque<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.torque.as_ref().map(|given| given.show(py)).transpose()
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let mut shown = vec![];
         for (given, field) in self.given.iter().zip(FIELDS) {
@@ -146,12 +158,15 @@ impl PyLimits {
         for (given, field) in self.tips() {
             shown.push(format!("{}={}", keyword(field), given.repr()));
         }
+        if let Some(torque) = &self.torque {
+            shown.push(format!("torque={}", torque.repr()));
+        }
         Ok(format!("Limits({})", shown.join(", ")))
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
         let Ok(other) = other.cast::<Self>() else { return Ok(false) };
-        if self.tips != other.get().tips {
+        if self.tips != other.get().tips || self.torque != other.get().torque {
             return Ok(false);
         }
         for pair in self.given.iter().zip(&other.get().given) {
@@ -170,6 +185,7 @@ impl PyLimits {
         let fields = self.given.iter().map(|given| given.as_ref().map(|given| given.hash(py)).transpose());
         let mut hashes = fields.collect::<PyResult<Vec<_>>>()?;
         hashes.extend(self.tips.iter().map(|given| given.as_ref().map(|given| content_hash(given) as isize)));
+        hashes.push(self.torque.as_ref().map(|given| content_hash(given) as isize));
         PyTuple::new(py, hashes)?.hash()
     }
 
@@ -182,6 +198,9 @@ impl PyLimits {
         }
         for (given, field) in self.tips() {
             options.set_item(keyword(field), given.show(py)?)?;
+        }
+        if let Some(torque) = &self.torque {
+            options.set_item("torque", torque.show(py)?)?;
         }
         Ok((PyTuple::empty(py), options))
     }
@@ -200,6 +219,7 @@ impl PyLimits {
                 None,
             ],
             tips: NO_TIPS,
+            torque: None,
         }
     }
 
@@ -217,14 +237,14 @@ impl PyLimits {
 
     /// Returns position limits alone.
     pub fn of_box(lower: Vec<f64>, upper: Vec<f64>) -> Self {
-        Self { given: [numbers(lower), numbers(upper), None, None, None], tips: NO_TIPS }
+        Self { given: [numbers(lower), numbers(upper), None, None, None], tips: NO_TIPS, torque: None }
     }
 
     /// Returns infinite limits for `n` joints.
     pub(super) fn none(n: usize) -> Self {
         let free = |limit: f64| numbers(vec![limit; n]);
         let given = [free(f64::NEG_INFINITY), free(f64::INFINITY), free(f64::INFINITY), None, None];
-        Self { given, tips: NO_TIPS }
+        Self { given, tips: NO_TIPS, torque: None }
     }
 
     /// Returns the limits in force for `robot`: these, with missing fields from the robot.
@@ -240,7 +260,7 @@ impl PyLimits {
                 *slot = Some(replacement.clone_ref(py));
             }
         }
-        Self { given, tips: self.tips.clone() }
+        Self { given, tips: self.tips.clone(), torque: self.torque.clone() }
     }
 
     /// Refuses callables of t, for motions without a known end.
@@ -262,13 +282,13 @@ impl PyLimits {
     /// Converts the limits for the core; samples functions of time.
     pub fn resolve(&self, py: Python<'_>, robot: &Robot, sampling: &Sampling) -> PyResult<Limits> {
         let limits = self.applied_to(py, Limits::of(robot), robot.dof(), sampling)?;
-        self.with_tips(limits, Some(robot))
+        self.with_tips_and_torque(limits, Some(robot))
     }
 
     /// Converts the limits for joints without a robot; missing fields are unlimited.
     pub fn for_joints(&self, py: Python<'_>, joints: &[String]) -> PyResult<Limits> {
         let limits = self.applied_to(py, Limits::none(joints.to_vec()), joints.len(), &Sampling::once())?;
-        self.with_tips(limits, None)
+        self.with_tips_and_torque(limits, None)
     }
 
     pub(super) fn applied_to(
@@ -286,12 +306,15 @@ impl PyLimits {
         Ok(limits)
     }
 
-    /// Adds the limits of tips.
-    pub(super) fn with_tips(&self, mut limits: Limits, robot: Option<&Robot>) -> PyResult<Limits> {
+    /// Adds the limits of tips and torques.
+    pub(super) fn with_tips_and_torque(&self, mut limits: Limits, robot: Option<&Robot>) -> PyResult<Limits> {
         for (given, field) in self.tips() {
             limits = limits.with_tip_limit(field, given.values(robot)?).map_err(raise)?;
         }
-        Ok(limits)
+        match &self.torque {
+            Some(torque) => limits.with_torque_limit(torque.values.clone()).map_err(raise),
+            None => Ok(limits),
+        }
     }
 
     /// The given limits of tips.
@@ -305,6 +328,19 @@ impl PyLimits {
 
     fn show<'py>(&self, py: Python<'py>, field: Field) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.given[field as usize].as_ref().map(|given| given.show(py)).transpose()
+    }
+}
+
+/// Reads torque limits.
+fn torque_limit(value: &Bound<'_, PyAny>) -> PyResult<PerJoint> {
+    let given = PerJoint::read("torque limit", value)?;
+    match given.values.iter().position(|limit| !(*limit > 0.0)) {
+        None => Ok(given),
+        Some(j) => {
+            let joint = if given.single { String::new() } else { format!(" of joint {}", j + 1) };
+            let limit = given.values[j];
+            Err(limit_error(format!("torque limit{joint} is {limit}: it must be positive; np.inf means no limit")))
+        }
     }
 }
 

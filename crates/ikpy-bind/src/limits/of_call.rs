@@ -49,7 +49,8 @@ pub fn limits_without_robot(
     match limits {
         None => Ok((Py::new(py, none)?, Limits::none_for(n))),
         Some(limits) => {
-            let resolved = limits.with_tips(limits.applied_to(py, Limits::none_for(n), n, sampling)?, None)?;
+            let resolved =
+                limits.with_tips_and_torque(limits.applied_to(py, Limits::none_for(n), n, sampling)?, None)?;
             Ok((Py::new(py, limits.else_of(py, none))?, resolved))
         }
     }

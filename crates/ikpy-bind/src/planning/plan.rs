@@ -191,7 +191,17 @@ impl PyPlan {
         Self::new(retimed, robot, in_force, self.obstacles.clone_ref(py))
     }
 
-    /// Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
+    /// Returns the joint torques (k, n) (N m; N for prismatic joints) of the plan at t (k,) (s), (n,) for a number, as `robot.torques`
+    /// does. Times outside the plan are clamped.
+    ///
+    /// Raises:
+    ///     InvalidInputError: a robot without dynamics.
+    fn torques<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.trajectory.get().torques_of(py, &self.robot.get().core, t)
+    }
+
+    /// Draws the arm along its path, the cost over evaluations, and the joint motions with their limits, and torques if the robot
+    /// has dynamics; returns a matplotlib
     /// figure.
     fn plot<'py>(slf: Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         python_calls::plot(slf.into_any(), "plan")

@@ -11,7 +11,7 @@ use pyo3::types::{IntoPyDict, PyDict, PyString, PyTuple};
 
 use super::body::PyBody;
 use super::robot_class::PyRobot;
-use crate::convert::{copied, counted, matrix4_array, row};
+use crate::convert::{copied, counted, matrix4_array, row, shortened};
 use crate::error::{misfit, raise};
 use crate::hash::content_hash;
 use crate::limits::PyLimits;
@@ -228,7 +228,9 @@ impl PyRobot {
             [] => String::new(),
             held => format!(", {} held", counted(held.len(), "joint")),
         };
-        format!("<Robot '{name}': {joints}, {base} to {tips}{held}>")
+        let payload: f64 = self.core.payloads().iter().map(|payload| payload.inertia.mass).sum();
+        let carried = if payload > 0.0 { format!(", carries {} kg", shortened(payload)) } else { String::new() };
+        format!("<Robot '{name}': {joints}, {base} to {tips}{held}{carried}>")
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -17,19 +17,21 @@ from ..options import (
     Jerk,
     LinkRadius,
     Margin,
+    Payload,
     RobotName,
     SceneFile,
     Seed,
     StartQ,
     TipLink,
     TipSpeed,
+    TorqueLimits,
     Trusted,
     UrdfFile,
     Velocity,
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
+from .planned import Animated, Budget, Out, SearchName, Solver, loaded, options, report, search
 
 _DURATION = 1.0  # s; the planner ignores it
 
@@ -67,6 +69,8 @@ def along_path(
     acceleration: Acceleration = None,
     jerk: Jerk = None,
     tip_speed: TipSpeed = None,
+    payload: Payload = None,
+    torque_limits: TorqueLimits = False,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -79,9 +83,9 @@ def along_path(
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion that moves the tip along a path."""
-    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
+    arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     path = _path(arm, curve, points)
-    chosen = _method(method, solver) | options(velocity, acceleration, jerk, tip_speed, max_evaluations)
+    chosen = _method(method, solver) | options(velocity, acceleration, jerk, tip_speed, torque, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_along_path(

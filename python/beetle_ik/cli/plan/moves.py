@@ -17,18 +17,20 @@ from ..options import (
     Jerk,
     LinkRadius,
     Margin,
+    Payload,
     RobotName,
     SceneFile,
     Seed,
     TipLink,
     TipSpeed,
+    TorqueLimits,
     Trusted,
     UrdfFile,
     Velocity,
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, options, report
+from .planned import Animated, Budget, Out, loaded, options, report
 
 _POSE = 6
 _KEYS: dict[str, tuple[set[str], set[str]]] = {
@@ -56,6 +58,8 @@ def moves(
     acceleration: Acceleration = None,
     jerk: Jerk = None,
     tip_speed: TipSpeed = None,
+    payload: Payload = None,
+    torque_limits: TorqueLimits = False,
     max_evaluations: Budget = None,
     seed: Seed = 0,
     out: Out = None,
@@ -71,9 +75,9 @@ def moves(
     Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or {"q": [...]}, joint
     positions; "via" of an arc is a point.
     """
-    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
+    arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     read = read_program(program)
-    chosen = options(velocity, acceleration, jerk, tip_speed, max_evaluations)
+    chosen = options(velocity, acceleration, jerk, tip_speed, torque, max_evaluations)
     obstacles = None if scene is None else Scene.load(scene)
     report(
         lambda: plan_moves(

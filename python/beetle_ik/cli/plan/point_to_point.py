@@ -15,12 +15,14 @@ from ..options import (
     Jerk,
     LinkRadius,
     Margin,
+    Payload,
     RobotName,
     SceneFile,
     Seed,
     Tilt,
     TipLink,
     TipSpeed,
+    TorqueLimits,
     Trusted,
     Up,
     UrdfFile,
@@ -29,7 +31,7 @@ from ..options import (
     load_robot,
     numbers,
 )
-from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
+from .planned import Animated, Budget, Out, SearchName, Solver, loaded, options, report, search
 
 
 class Method(StrEnum):
@@ -89,6 +91,8 @@ def point_to_point(
     acceleration: Acceleration = None,
     jerk: Jerk = None,
     tip_speed: TipSpeed = None,
+    payload: Payload = None,
+    torque_limits: TorqueLimits = False,
     solver: Solver = None,
     max_evaluations: Budget = None,
     seed: Seed = 0,
@@ -101,9 +105,11 @@ def point_to_point(
     as_json: AsJson = False,
 ) -> None:
     """Plan a motion between two places of the tip, or two configurations, from rest to rest."""
-    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
+    arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     ends = _end("start", start, start_q) | _end("end", end, end_q)
-    chosen = {"method": _method(method, solver)} | options(velocity, acceleration, jerk, tip_speed, max_evaluations)
+    chosen = {"method": _method(method, solver)} | options(
+        velocity, acceleration, jerk, tip_speed, torque, max_evaluations
+    )
     keep = kept_upright(arm, tilt, up)
     obstacles = None if scene is None else Scene.load(scene)
     report(

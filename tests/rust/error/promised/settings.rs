@@ -18,6 +18,8 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Limits::replace" NotFinite: none().replace(Field::Velocity, vec![Profile::Sinusoid(nan)]), "velocity limit of joint '0' must be finite, but mean is NaN";
         "Limits::with_tip_limit" WrongLength: none().with_tip_limit(TipField::Speed, vec![]), "tip speed limit: expected one number, or one per tip, got 0";
         "Limits::with_tip_limit" OutOfRange: none().with_tip_limit(TipField::TurnSpeed, vec![0.0]), "tip turn speed limit must be positive, got 0";
+        "Limits::with_torque_limit" WrongLength: constant(Field::Velocity, 1.0).with_torque_limit(vec![1.0; 3]), "torque limit: expected one number, or 2 (one per joint), got 3";
+        "Limits::with_torque_limit" OutOfRange: constant(Field::Velocity, 1.0).with_torque_limit(vec![1.0, 0.0]), "torque limit of joint '1' must be positive, got 0";
         "Limits::validate" NegativeLimit: constant(Field::Velocity, -1.0).validate(0.1, 1), "velocity limit of joint '0' is -1 at t = 0 s: a limit cannot be negative";
         "Limits::validate" EmptyRange: crossed().validate(0.1, 1), "joint '0': lower limit 1 is above upper limit 0";
         "Limits::admit_start" OutsideLimits: constant(Field::Upper, 1.0).admit_start(None, "start", &[0.0, 1.5], &StartSlack::default()), "start: joint '1' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose; start slack takes a start farther out";

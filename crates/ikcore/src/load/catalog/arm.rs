@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::dynamics::Inertia;
 use crate::error::Result;
 use crate::load::dh::{Dh, DhTable};
 use crate::math::pose;
@@ -17,6 +18,16 @@ pub(super) struct Arm {
     pub joints: &'static [DhRow],
     /// Distance of the flange from the last DH frame, along its z (m).
     pub flange: f64,
+    /// Inertias of links; none where no source gives them.
+    pub bodies: &'static [LinkBody],
+}
+
+/// Inertia of a link, in its DH frame: mass (kg), centre (m), and xx, xy, xz, yy, yz, zz of the inertia matrix about the centre (kg m^2).
+pub(super) struct LinkBody {
+    pub link: &'static str,
+    pub mass: f64,
+    pub center: [f64; 3],
+    pub matrix: [f64; 6],
 }
 
 /// Joint with its DH parameters (m, deg) and limits.
@@ -28,8 +39,8 @@ pub(super) struct DhRow {
     limits: JointRange,
 }
 
-/// Position and velocity limits of a joint (rad, rad/s), and its rated acceleration and jerk (rad/s^2, rad/s^3; infinite if
-/// the maker publishes none).
+/// Position and velocity limits of a joint (rad, rad/s), and its rated acceleration, jerk and torque (rad/s^2, rad/s^3, N m; infinite
+/// if the maker publishes none).
 #[derive(Clone, Copy)]
 pub(super) struct JointRange {
     kind: JointKind,
@@ -38,12 +49,18 @@ pub(super) struct JointRange {
     velocity: f64,
     acceleration: f64,
     jerk: f64,
+    torque: f64,
 }
 
 impl JointRange {
     /// Adds the maker's acceleration and jerk limits (rad/s^2, rad/s^3).
     pub(super) const fn rated(self, acceleration: f64, jerk: f64) -> Self {
         Self { acceleration, jerk, ..self }
+    }
+
+    /// Adds the maker's torque limit (N m).
+    pub(super) const fn torque(self, torque: f64) -> Self {
+        Self { torque, ..self }
     }
 }
 
@@ -54,8 +71,8 @@ pub(super) const fn row(a: f64, alpha: f64, d: f64, theta: f64, limits: JointRan
 
 /// Creates limits from values in rad and rad/s.
 pub(super) const fn radians(lower: f64, upper: f64, velocity: f64) -> JointRange {
-    let (acceleration, jerk) = (f64::INFINITY, f64::INFINITY);
-    JointRange { kind: JointKind::Revolute, lower, upper, velocity, acceleration, jerk }
+    let (acceleration, jerk, torque) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
+    JointRange { kind: JointKind::Revolute, lower, upper, velocity, acceleration, jerk, torque }
 }
 
 /// Creates limits from values in degrees and degrees per second.
@@ -66,6 +83,14 @@ pub(super) const fn degrees(lower: f64, upper: f64, velocity: f64) -> JointRange
 /// Creates the limits of a continuous joint, with the speed in degrees per second.
 pub(super) const fn endless(velocity: f64) -> JointRange {
     JointRange { kind: JointKind::Continuous, ..radians(f64::NEG_INFINITY, f64::INFINITY, velocity.to_radians()) }
+}
+
+impl LinkBody {
+    fn inertia(&self) -> (&'static str, Inertia) {
+        let [xx, xy, xz, yy, yz, zz] = self.matrix;
+        let matrix = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        (self.link, Inertia { mass: self.mass, center: self.center, matrix })
+    }
 }
 
 impl Arm {
@@ -88,11 +113,13 @@ impl Arm {
             let joint = chain.joint_mut(index);
             joint.name = (*name).into();
             (joint.rated_acceleration, joint.rated_jerk) = (row.limits.acceleration, row.limits.jerk);
+            joint.rated_torque = row.limits.torque;
         }
         if self.flange != 0.0 {
             chain.fixed(pose::translation(0.0, 0.0, self.flange));
             chain.link("flange");
         }
-        chain.build()
+        let robot = chain.build()?;
+        if self.bodies.is_empty() { Ok(robot) } else { robot.with_inertias(self.bodies.iter().map(LinkBody::inertia)) }
     }
 }

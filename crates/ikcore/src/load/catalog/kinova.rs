@@ -19,4 +19,5 @@ pub(super) const GEN3: Arm = Arm {
         row(0.0, 180.0, -(0.1059 + 0.0615), 180.0, endless(69.91)),
     ],
     flange: 0.0,
+    bodies: &[],
 };

@@ -19,6 +19,7 @@ pub(super) const IIWA14: Arm = Arm {
         row(0.0, 0.0, 0.126, 0.0, degrees(-175.0, 175.0, 135.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// LBR iiwa 7 R800: the same arm, shorter and faster; from its data sheet.
@@ -36,6 +37,7 @@ pub(super) const IIWA7: Arm = Arm {
         row(0.0, 0.0, 0.126, 0.0, degrees(-175.0, 175.0, 180.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// KR 210 R2700 extra: dimensions, ranges and speeds of the data sheet. Joint values match the controller: A2 = -90 with A3 =
@@ -53,6 +55,7 @@ pub(super) const KR210: Arm = Arm {
         row(0.0, -90.0, -0.215, 0.0, degrees(-350.0, 350.0, 219.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// KR 210 R2700 extra as printed in Table 1 of Yuan et al. 2016, "Autonomous path planning solution for industrial
@@ -71,4 +74,5 @@ pub(super) const KR210_YUAN2016: Arm = Arm {
         row(0.0, -90.0, -0.215, 0.0, degrees(-350.0, 350.0, f64::INFINITY)),
     ],
     flange: 0.0,
+    bodies: &[],
 };

@@ -28,6 +28,7 @@ pub(super) const UR3E: Arm = Arm {
         row(0.0, 0.0, 0.0921, 0.0, endless(360.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// UR5 (CB series, third version).
@@ -44,6 +45,7 @@ pub(super) const UR5: Arm = Arm {
         row(0.0, 0.0, 0.0823, 0.0, two_turns(180.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// UR5e.
@@ -60,6 +62,7 @@ pub(super) const UR5E: Arm = Arm {
         row(0.0, 0.0, 0.0996, 0.0, two_turns(180.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// UR10 (CB series).
@@ -76,6 +79,7 @@ pub(super) const UR10: Arm = Arm {
         row(0.0, 0.0, 0.0922, 0.0, two_turns(180.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };
 
 /// UR10e.
@@ -92,4 +96,5 @@ pub(super) const UR10E: Arm = Arm {
         row(0.0, 0.0, 0.11655, 0.0, two_turns(180.0)),
     ],
     flange: 0.0,
+    bodies: &[],
 };

@@ -1,15 +1,15 @@
 //! Robot from the URDF joints between base and tip: adds the independent joints (entries of q, hence columns of the Jacobian)
 //! in order, then the elements that they drive.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::document::{Document, UrdfKind};
 use super::mimic::{self, Coupling, Couplings};
-use super::off_chain;
+use super::off_chain::{self, Follower};
 use super::step;
 use super::tree::{Tree, TreeStep};
 use crate::error::{Error, Result};
-use crate::robot::{ChainBuilder, Robot, require_supported};
+use crate::robot::{ChainBuilder, Masses, Robot, require_supported};
 
 /// Builds the robot whose chain leads from link `base` to the first of `tips`. All other links become branches; branches to
 /// further tips keep their joints.
@@ -44,8 +44,24 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
         chain.link(step::far_link(document, *at));
     }
     let robot = chain.build()?;
-    let off_chain = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
-    robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())
+    let (off_chain, followers) = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
+    let robot = robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())?;
+    with_masses(document, robot, &followers)
+}
+
+/// Adds masses, and the friction of mimic joints beside the chain.
+fn with_masses(document: &Document, robot: Robot, followers: &[Follower]) -> Result<Robot> {
+    let followers_of = |master: usize| followers.iter().filter(move |follower| follower.master == master);
+    let robot = match followers {
+        [] => robot,
+        _ => robot.with_limits(|index, joint| {
+            followers_of(index).for_each(|follower| mimic::reflect(joint, &follower.joint, follower.scale));
+        })?,
+    };
+    let links: HashSet<&str> = robot.all_link_names().collect();
+    let inertias = document.inertias.iter().filter(|known| links.contains(known.link.as_str()));
+    let masses = Masses { links: inertias.cloned().collect(), faults: document.faults.clone(), ..Masses::default() };
+    Ok(robot.with_masses(masses))
 }
 
 /// Returns the moving joints of a path.

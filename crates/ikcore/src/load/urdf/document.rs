@@ -4,10 +4,11 @@ use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
+use super::inertial::{self, JointLoad};
 use super::link_capsules::{self, LinkCapsules};
 use super::{visuals, xml};
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::robot::Visual;
+use crate::robot::{InertiaFault, LinkInertia, Visual};
 use crate::units::{self, UnitDoubt};
 
 /// Checked URDF: numbers are finite (limits may be infinite), names unique. Its joints need not form a tree.
@@ -22,6 +23,9 @@ pub(super) struct Document {
     /// Collision shapes of each link, by name.
     pub(super) capsules: HashMap<String, LinkCapsules>,
     pub(super) visuals: Vec<Visual>,
+    pub(super) inertias: Vec<LinkInertia>,
+    /// Reasons why the dynamics of the file cannot be used.
+    pub(super) faults: Vec<InertiaFault>,
 }
 
 /// Joint as described in the text, with the defaults of URDF filled in.
@@ -41,6 +45,8 @@ pub(super) struct UrdfJoint {
     pub(super) velocity: f64,
     /// Rated acceleration and jerk (rad/s^2, m/s^2; rad/s^3, m/s^3): of URDF 1.2, infinite where they are missing.
     pub(super) rated: [f64; 2],
+    /// Torque limit, friction and rotor.
+    pub(super) load: JointLoad,
     /// Whether the joint has an element `limit`.
     pub(super) has_limit: bool,
     pub(super) mimic: Option<Mimic>,
@@ -97,20 +103,28 @@ impl Document {
         }
         let name = xml::attribute(root, "name")?.unwrap_or("robot").to_owned();
         let (mut names, mut links, mut capsules) = (HashSet::new(), vec![], HashMap::new());
+        let (mut inertias, mut faults) = (vec![], vec![]);
         for link in xml::children(root, "link") {
             let name = new_name(link, "link", &mut names)?;
             links.push(name.to_owned());
             capsules.insert(name.to_owned(), link_capsules::read(name, link));
+            match inertial::read(name, link) {
+                Ok(inertia) => inertias.extend(inertia.map(|inertia| LinkInertia { link: name.to_owned(), inertia })),
+                Err((error, point)) => {
+                    faults.push(InertiaFault { owner: name.to_owned(), problem: error.to_string(), point });
+                }
+            }
         }
         names.clear();
         let mut joints = vec![];
         for joint in xml::children(root, "joint") {
             let name = new_name(joint, "joint", &mut names)?;
-            joints.push(read_joint(joint, name)?);
+            joints.push(read_joint(joint, name, &mut faults)?);
         }
         let joint_lines = xml::lines(&text, xml::children(root, "joint"));
         let joint_numbers = joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
-        Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules, visuals: visuals::read(root) })
+        let visuals = visuals::read(root);
+        Ok(Self { name, links, joints, joint_numbers, joint_lines, capsules, visuals, inertias, faults })
     }
 
     /// Returns the index of the joint with this name.
@@ -138,7 +152,7 @@ fn new_name<'a>(node: Node<'a, '_>, tag: &str, names: &mut HashSet<&'a str>) -> 
     if names.insert(name) { Ok(name) } else { Err(xml::error_at(node, format!("a second {tag} is named '{name}'"))) }
 }
 
-fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
+fn read_joint(joint: Node, name: &str, faults: &mut Vec<InertiaFault>) -> Result<UrdfJoint> {
     let owner = format!("joint '{}'", shortened(name));
     let kind = joint_kind(joint, &owner)?;
     let link = |tag: &str| match xml::children(joint, tag).next() {
@@ -158,6 +172,10 @@ fn read_joint(joint: Node, name: &str) -> Result<UrdfJoint> {
         },
         velocity: number(joint, "limit", "velocity", &owner)?.unwrap_or(f64::INFINITY),
         rated: rated(joint, &owner)?,
+        load: inertial::joint_load(joint, &owner).unwrap_or_else(|error| {
+            faults.push(InertiaFault { owner: owner.clone(), problem: error.to_string(), point: None });
+            JointLoad::default()
+        }),
         has_limit: xml::children(joint, "limit").next().is_some(),
         mimic: mimic(joint, &owner)?,
         name: name.into(),

@@ -120,6 +120,7 @@ pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Resu
     }
     master.lower = master.lower.max(lower);
     master.upper = master.upper.min(upper);
+    reflect(master, follower, scale);
     for (own, rate) in [
         (&mut master.velocity, follower.velocity),
         (&mut master.rated_acceleration, follower.rated_acceleration),
@@ -128,4 +129,11 @@ pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: Drive) -> Resu
         *own = own.min(rate / scale.abs());
     }
     Ok(())
+}
+
+/// Adds friction and rotor of a mimic joint, as its master feels them. The torque limit stays that of the master's motor.
+pub(super) fn reflect(master: &mut Joint, follower: &Joint, scale: f64) {
+    master.damping += scale * scale * follower.damping;
+    master.armature += scale * scale * follower.armature;
+    master.friction += scale.abs() * follower.friction;
 }

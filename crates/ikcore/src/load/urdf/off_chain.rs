@@ -9,8 +9,16 @@ use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
+/// Mimic joint beside the chain that follows an independent joint.
+pub(super) struct Follower {
+    pub(super) joint: Joint,
+    /// Index of its master in q.
+    pub(super) master: usize,
+    pub(super) scale: f64,
+}
+
 /// Returns the links that branch off the chain of `robot`, whose joints are `index_in_q`; joints in `moving` lead to a
-/// further tip. Other joints are held at zero, or at the limit nearest to zero; joints without a single axis stay in their
+/// further tip; and the mimic joints beside the chain that move. Other joints are held at zero, or at the limit nearest to zero; joints without a single axis stay in their
 /// origin.
 pub(super) fn of(
     document: &Document,
@@ -18,10 +26,11 @@ pub(super) fn of(
     robot: &Robot,
     mut couplings: Couplings,
     (index_in_q, moving): (&HashMap<usize, usize>, &[usize]),
-) -> Result<OffChain> {
+) -> Result<(OffChain, Vec<Follower>)> {
     let chain: Vec<&str> = robot.link_names().collect();
     let mut off_chain = OffChain::default();
     let mut drivers = index_in_q.clone();
+    let mut followers = vec![];
     for (parent, at) in tree.off_chain(&chain) {
         let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
@@ -36,13 +45,17 @@ pub(super) fn of(
                         number
                     }
                 };
+                if joint < robot.dof() && at.joint != coupling.master && !moving.contains(&at.joint) {
+                    let described = step::described(document, at.joint)?;
+                    followers.push(Follower { joint: described, master: joint, scale: coupling.drive.scale });
+                }
                 Some(DrivenJoint { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
             }
         };
         let elements = step::elements(document, at, moved)?;
         off_chain.links.push(OffChainLink { name: step::far_link(document, at).into(), parent, elements });
     }
-    Ok(off_chain)
+    Ok((off_chain, followers))
 }
 
 /// Whether a joint has exactly one axis.

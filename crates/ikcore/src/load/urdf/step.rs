@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::document::{Document, UrdfKind};
+use super::inertial::JointLoad;
 use super::tree::TreeStep;
 use crate::error::Result;
 use crate::math::{Pose, pose};
@@ -38,8 +39,16 @@ pub(super) fn described(document: &Document, index: usize) -> Result<Joint> {
     let joint = &document.joints[index];
     let kind = kind(document, index)?;
     let [rated_acceleration, rated_jerk] = joint.rated;
-    let described =
-        Joint { rated_acceleration, rated_jerk, ..Joint::new(&joint.name, kind).with_velocity(joint.velocity) };
+    let JointLoad { effort, damping, friction, armature } = joint.load;
+    let described = Joint {
+        rated_acceleration,
+        rated_jerk,
+        rated_torque: effort,
+        damping,
+        friction,
+        armature,
+        ..Joint::new(&joint.name, kind).with_velocity(joint.velocity)
+    };
     match kind {
         JointKind::Continuous => Ok(described),
         _ => Ok(described.with_range(joint.range.0, joint.range.1)),

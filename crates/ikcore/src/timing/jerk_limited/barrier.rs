@@ -3,7 +3,7 @@
 //! Each step needs a positive definite matrix with a few diagonals. The limit of the jerk is a linear form below the convex 1 / sqrt(y);
 //! the part of the second derivative that its curvature would take away is left out. All iterates keep all limits.
 
-use super::constraints::{Constraints, JointRow, RatePoint, TipRow};
+use super::constraints::{Constraints, PointRows, RatePoint, TipRow};
 use super::rate_spline::RateSpline;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
     /// The duration with the barrier; `None` outside of the constraints.
     fn value(&self, coefficients: &[f64], barrier: f64) -> Option<f64> {
         let (mut duration, mut logarithms) = (0.0, Logarithms::default());
-        for (point, rows, tips) in self.constraints.all() {
+        for PointRows { point, joints, tips, torques } in self.constraints.all() {
             let y = combined(point, coefficients);
             let room = 1.0 - point.slowness * y[0];
             if !(y[0] > 0.0 && room > 0.0) {
@@ -137,7 +137,13 @@ impl<'a> Search<'a> {
                 }
                 logarithms.add(room);
             }
-            for row in rows {
+            for (room, _) in torques.iter().flat_map(|row| row.rooms(&y)) {
+                if !(room > 0.0) {
+                    return None;
+                }
+                logarithms.add(room);
+            }
+            for row in joints {
                 let [a, b] = row.used(&y);
                 let [of_acceleration, of_jerk] = [1.0 - a * a, slow * slow - b * b];
                 if !(of_acceleration > 0.0 && of_jerk > 0.0) {
@@ -154,10 +160,9 @@ impl<'a> Search<'a> {
         let value = self.value(&self.at, barrier)?;
         self.gradient.fill(0.0);
         self.band.fill([0.0; SIDE_DIAGONALS + 1]);
-        for (point, rows, tips) in self.constraints.all() {
-            let y = combined(point, &self.at);
-            let mut local = Local::of(point, rows, &y, barrier);
-            tips.iter().for_each(|tip| local.add_tip(barrier, tip, &y));
+        for rows in self.constraints.all() {
+            let (point, y) = (rows.point, combined(rows.point, &self.at));
+            let local = Local::of(rows, &y, barrier);
             for i in 0..3 {
                 let weights = |coefficient: usize| [0, 1, 2].map(|order| point.weights[order][coefficient]);
                 let of_i = weights(i);
@@ -207,7 +212,7 @@ struct Local {
 }
 
 impl Local {
-    fn of(point: &RatePoint, rows: &[JointRow], y: &[f64; 3], barrier: f64) -> Self {
+    fn of(PointRows { point, joints, tips, torques }: PointRows<'_>, y: &[f64; 3], barrier: f64) -> Self {
         let slow = 1.0 / y[0].sqrt();
         // The derivative of 1 / sqrt(y).
         let slower = -0.5 * slow / y[0];
@@ -215,7 +220,7 @@ impl Local {
         local.gradient[0] = point.share * slower;
         local.curvature[0] = -1.5 * point.share * slower / y[0];
         local.add(barrier, 1.0 / (1.0 - point.slowness * y[0]), [-point.slowness, 0.0, 0.0]);
-        for row in rows {
+        for row in joints {
             let [a, b] = row.used(y);
             let [a0, a1] = row.acceleration;
             let [b0, b1, b2] = row.jerk;
@@ -223,6 +228,10 @@ impl Local {
             local.add_pair(barrier, [above - below, above * above + below * below], [a0, a1, 0.0]);
             local.add(barrier, 1.0 / (slow - b), [slower - b0, -b1, -b2]);
             local.add(barrier, 1.0 / (slow + b), [slower + b0, b1, b2]);
+        }
+        tips.iter().for_each(|tip| local.add_tip(barrier, tip, y));
+        for (room, slope) in torques.iter().flat_map(|row| row.rooms(y)) {
+            local.add(barrier, 1.0 / room, slope);
         }
         local
     }

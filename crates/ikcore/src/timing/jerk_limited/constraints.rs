@@ -6,7 +6,7 @@
 use super::super::constant_limits::ConstantLimits;
 use super::clock::{Clock, PathPoint};
 use super::rate_spline::{RateSpline, Weights};
-use crate::constraint::{JointSpan, TipRates, VectorJet};
+use crate::constraint::{Drag, JointSpan, JointTorques, TipRates, TorquePoint, TorqueTerms, VectorJet};
 use crate::limits::TipField;
 use crate::math::vector3::{Vector, norm};
 
@@ -24,6 +24,17 @@ pub(super) struct Constraints {
     /// By point, then by tip with an acceleration limit.
     tip_rows: Vec<TipRow>,
     tips: usize,
+    /// By point, then by joint; empty without torque limits.
+    torque_rows: Vec<TorqueRow>,
+}
+
+/// One point of the clock, and the limits there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointRows<'a> {
+    pub point: &'a RatePoint,
+    pub joints: &'a [JointRow],
+    pub tips: &'a [TipRow],
+    pub torques: &'a [TorqueRow],
 }
 
 /// One point of the clock.
@@ -53,6 +64,16 @@ pub(super) struct TipRow {
     pub of_slope: Vector,
 }
 
+/// The torque limit of a joint at one point: |hold + a y + b y'| + friction <= 1, with the friction on the side that it acts on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TorqueRow {
+    pub hold: f64,
+    pub of_y: f64,
+    pub of_slope: f64,
+    /// Against positive and against negative torques.
+    pub drags: [Drag; 2],
+}
+
 impl Constraints {
     /// The limits of a motion at the `rate` of a `clock`, whose intervals take about these times (s).
     pub(super) fn new(clock: &Clock, rate: &RateSpline, times: &[f64], limits: &ConstantLimits) -> Self {
@@ -60,6 +81,8 @@ impl Constraints {
         let mut rows = Vec::with_capacity(PLACES.len() * rate.intervals() * limits.dof());
         let mut tips = limits.tips.as_ref().map(TipsAt::new);
         let mut tip_rows = vec![];
+        let mut torques = limits.torques.as_ref().map(TorquesAt::new);
+        let mut torque_rows = vec![];
         for (interval, time) in times.iter().enumerate() {
             for [place, weight] in PLACES {
                 let at = clock.at(rate.reading(interval, place), rate.reading(interval, 0.5));
@@ -76,12 +99,15 @@ impl Constraints {
                         jerk: [third * b, 1.5 * second * b, 0.5 * first * b],
                     });
                 }
+                if let Some(torques) = &mut torques {
+                    torques.push(&at, 1.0 / slowness, &mut torque_rows);
+                }
                 let weights = rate.weights(interval, place);
                 points.push(RatePoint { interval, weights, share: weight * rate.length(interval), slowness });
             }
         }
         let tips = tip_rows.len() / points.len();
-        Self { points, rows, joints: limits.dof(), tip_rows, tips }
+        Self { points, rows, joints: limits.dof(), tip_rows, tips, torque_rows }
     }
 
     /// The largest change of the jerk of a joint in an interval, and at its end to the next, as parts of its limit.
@@ -106,24 +132,26 @@ impl Constraints {
     }
 
     /// Each point with its rows.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&RatePoint, &[JointRow], &[TipRow])> {
-        self.points.iter().enumerate().zip(self.rows.chunks_exact(self.joints)).map(|((i, point), rows)| {
-            let tips = i * self.tips..(i + 1) * self.tips;
-            (point, rows, &self.tip_rows[tips])
+    pub(super) fn all(&self) -> impl Iterator<Item = PointRows<'_>> {
+        let torques = if self.torque_rows.is_empty() { 0 } else { self.joints };
+        self.points.iter().enumerate().zip(self.rows.chunks_exact(self.joints)).map(move |((i, point), joints)| {
+            let tips = &self.tip_rows[i * self.tips..(i + 1) * self.tips];
+            PointRows { point, joints, tips, torques: &self.torque_rows[i * torques..(i + 1) * torques] }
         })
     }
 
     /// Number of inequalities.
     pub(super) fn count(&self) -> usize {
-        self.points.len() + 4 * self.rows.len() + self.tip_rows.len()
+        self.points.len() + 4 * self.rows.len() + self.tip_rows.len() + 2 * self.torque_rows.len()
     }
 
     /// Measures the clock so that y = 1 everywhere reaches a limit and violates none. Returns that y in the old measure.
     pub(super) fn normalize(&mut self) -> f64 {
         let of_row = |row: &JointRow| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
-        let of_point = |(point, rows, tips): (&RatePoint, &[JointRow], &[TipRow])| {
+        let of_point = |PointRows { point, joints, tips, torques }: PointRows<'_>| {
             let of_tips = tips.iter().map(|tip| norm(&tip.of_y)).fold(point.slowness, f64::max);
-            rows.iter().map(of_row).fold(of_tips, f64::max)
+            let of_torques = torques.iter().map(TorqueRow::slowness).fold(of_tips, f64::max);
+            joints.iter().map(of_row).fold(of_torques, f64::max)
         };
         let y = 1.0 / self.all().map(of_point).fold(0.0, f64::max);
         self.restore(1.0 / y);
@@ -143,6 +171,10 @@ impl Constraints {
         for tip in &mut self.tip_rows {
             tip.of_y = tip.of_y.map(|a| a * y);
             tip.of_slope = tip.of_slope.map(|b| b * y);
+        }
+        for row in &mut self.torque_rows {
+            (row.of_y, row.of_slope) = (row.of_y * y, row.of_slope * y);
+            row.drags.iter_mut().for_each(|drag| drag.per_square *= y);
         }
     }
 }
@@ -164,7 +196,7 @@ impl<'a> TipsAt<'a> {
         self.interval.set(robot, (0..robot.dof()).map(|joint| at.expansion(joint)), [0.0, 1.0]);
         let mut slowness = 0.0_f64;
         for tip in self.rates.tips() {
-            let jet = self.interval.jet(robot, tip);
+            let jet = self.interval.jet(robot, &tip.elements);
             let part = |rate: &VectorJet, field| (norm(&rate.middle()) / tip.limit(field)).powi(2);
             let speeds = [part(&jet.velocity, TipField::Speed), part(&jet.turn, TipField::TurnSpeed)];
             slowness = speeds.into_iter().fold(slowness, f64::max);
@@ -177,6 +209,62 @@ impl<'a> TipsAt<'a> {
             }
         }
         slowness
+    }
+}
+
+/// The torques of all joints at a point of the clock.
+struct TorquesAt<'a> {
+    torques: &'a JointTorques,
+    at: TorquePoint,
+    terms: TorqueTerms,
+}
+
+impl<'a> TorquesAt<'a> {
+    fn new(torques: &'a JointTorques) -> Self {
+        Self { torques, at: torques.point(), terms: torques.terms() }
+    }
+
+    /// Adds the rows of a point where y is at most `most`.
+    fn push(&mut self, point: &PathPoint<'_>, most: f64, rows: &mut Vec<TorqueRow>) {
+        let Self { torques, at, terms } = self;
+        for joint in 0..torques.dof() {
+            [at.q[joint], at.first[joint], at.second[joint], _] = point.joint(joint);
+        }
+        torques.write_terms(at, terms);
+        rows.extend(torques.limits().iter().enumerate().map(|(joint, limit)| {
+            let (hold, rate) = (terms.hold[joint], at.first[joint]);
+            let drag = |rate: f64| {
+                let Drag { at_rest, per_square } = torques.friction(joint).drag(rate, limit - hold.abs(), most);
+                Drag { at_rest: at_rest / limit, per_square: per_square / limit }
+            };
+            TorqueRow {
+                hold: hold / limit,
+                of_y: terms.of_square[joint] / limit,
+                of_slope: 0.5 * terms.of_change[joint] / limit,
+                drags: [rate, -rate].map(drag),
+            }
+        }));
+    }
+}
+
+impl TorqueRow {
+    /// What is left above and below, as parts of the limit, and the derivatives by y and y'.
+    #[inline]
+    pub(super) fn rooms(&self, [y, slope, _]: &[f64; 3]) -> [(f64, [f64; 3]); 2] {
+        let torque = self.hold + self.of_y * y + self.of_slope * slope;
+        let [above, below] = self.drags;
+        let room = |sign: f64, drag: Drag| {
+            let left = 1.0 - sign * torque - drag.at_rest - drag.per_square * y;
+            (left, [-sign * self.of_y - drag.per_square, -sign * self.of_slope, 0.0])
+        };
+        [room(1.0, above), room(-1.0, below)]
+    }
+
+    /// 1 / y where a steady rate reaches the limit.
+    fn slowness(&self) -> f64 {
+        let of_side =
+            |(sign, drag): (f64, &Drag)| (sign * self.of_y + drag.per_square) / (1.0 - sign * self.hold - drag.at_rest);
+        [1.0, -1.0].into_iter().zip(&self.drags).map(of_side).fold(0.0, f64::max)
     }
 }
 

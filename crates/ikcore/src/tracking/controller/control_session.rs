@@ -81,6 +81,7 @@ impl ControlSession {
         let remedy = "a controller keeps position and velocity limits; leave it out";
         limits.require_none(&[Field::Acceleration, Field::Jerk], "track_model_free", remedy)?;
         limits.refuse_tips(&TipField::ALL, "track_model_free", "a controller knows nothing of the arm")?;
+        limits.refuse_torque("track_model_free", "a controller knows nothing of the arm")?;
         let AdmittedStart { q, outside } = limits.admit_start(None, "start", start, &StartSlack::default())?;
         let start = &q[..];
         Ok(Self {

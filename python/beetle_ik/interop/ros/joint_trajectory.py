@@ -5,11 +5,11 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from .._core import InvalidInputError, Trajectory
-from ..calls.arguments import require_text
-from ..files.derivatives import has_continuous_acceleration
-from ..files.whole import whole_file
-from .samples import samples
+from ..._core import InvalidInputError, Trajectory
+from ...calls.arguments import require_text
+from ...files.derivatives import has_continuous_acceleration
+from ...files.whole import whole_file
+from ..samples import named_joints, samples
 
 _NANO = 1_000_000_000
 _CUBIC = 3
@@ -40,9 +40,7 @@ def to_ros(
     """
     time, *values_of = samples(trajectory, dt)
     require_text("frame_id", frame_id)
-    names = list(trajectory.joint_names if joint_names is None else joint_names)
-    if len(names) != len(trajectory.joint_names):
-        raise InvalidInputError(f"joint_names: expected {len(trajectory.joint_names)}, one per joint, got {len(names)}")
+    names = named_joints(trajectory, joint_names)
     degree = trajectory.coefficients.shape[2] - 1
     with_accelerations = degree > _CUBIC or (degree > 1 and has_continuous_acceleration(trajectory))
     fields = ("positions", "velocities", "accelerations")[: 1 + (degree > 1) + with_accelerations]

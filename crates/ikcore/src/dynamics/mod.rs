@@ -1,0 +1,34 @@
+//! Dynamics of a tree of rigid bodies as plain data: no names, limits or files, and no `Robot`.
+//!
+//! All vectors are in base axes, at frames that the kinematics has found; so any tree of stages is one loop. A body is its
+//! mass, first moment and second moment about the origin of its frame, which add up over fixed joints.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `inertia` | mass, centre and inertia matrix of a body, and which are possible |
+//! | `mass_moments` | moments of a body, which add up |
+//! | `bodies` | moving bodies of a robot, gravity, friction and rotors |
+//! | `scratch`, `wide_vectors` | scratch memory and registers of the kernels |
+//! | `inverse` | recursive Newton-Euler algorithm: the torques of a motion |
+//! | `gravity` | torques that hold the bodies up, centre of mass |
+//! | `mass_matrix` | composite rigid body algorithm |
+//! | `forward` | accelerations that torques cause |
+//! | `rotation_vector_rate` | angular acceleration of a floating base |
+
+mod bodies;
+mod forward;
+mod gravity;
+mod inertia;
+mod inverse;
+mod mass_matrix;
+mod mass_moments;
+mod rotation_vector_rate;
+mod scratch;
+mod wide_vectors;
+
+pub(crate) use bodies::MovingBody;
+pub use bodies::{Dynamics, JointDrive};
+pub use inertia::Inertia;
+pub use inverse::{AppliedWrench, DynamicState};
+pub(crate) use mass_moments::MassMoments;
+pub use scratch::DynamicsScratch;

@@ -1,0 +1,90 @@
+"""Arrays of joint positions in the order of others, with entries of joints that do not move the arm."""
+
+from collections.abc import Collection, Sequence
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import InvalidInputError, Robot, UnknownNameError
+from ..calls.text import listed
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+class JointEntries:
+    """Where the joints of an arm are in an array; joints that slide are in m.
+
+    Args:
+        robot: the arm.
+        joints: names of all joints of the file.
+        names: names of the first entries, in order.
+        argument: name of the argument that has the names, for messages.
+        degrees: whether joints that turn are in degrees.
+
+    Raises:
+        UnknownNameError: a name that is no joint of the file.
+        InvalidInputError: a joint of the arm that is missing, or a name that is there twice.
+    """
+
+    def __init__(
+        self, robot: Robot, joints: Collection[str], names: Sequence[str], *, argument: str, degrees: bool
+    ) -> None:
+        """Finds the joints of the arm among the names."""
+        self.names = list(names)
+        for name in self.names:
+            if name not in joints:
+                raise UnknownNameError(f"{argument}: no joint '{name}' in the robot; joints: {listed(joints)}")
+            if self.names.count(name) > 1:
+                raise InvalidInputError(f"{argument}: '{name}' is there twice")
+        for joint in robot.joint_names:
+            if joint not in self.names:
+                raise InvalidInputError(
+                    f"{argument}: joint '{joint}' is missing, and moves the frame '{robot.tips[0]}'"
+                )
+        self._turns = degrees & np.array([kind != "prismatic" for kind in robot.joint_kinds])
+        self.at = [self.names.index(joint) for joint in robot.joint_names]
+
+    def read(self, name: str, values: ArrayLike) -> Array:
+        """Returns an array of entries (k,), a copy, checked."""
+        try:
+            entries = np.array(values, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InvalidInputError(f"{name} must be an array of numbers, got {values!r:.60}") from None
+        if entries.ndim != 1 or len(entries) < len(self.names):
+            raise InvalidInputError(
+                f"{name}: expected at least {len(self.names)} entries, one per joint name, got shape {entries.shape}"
+            )
+        finite = np.isfinite(entries[self.at])
+        if not finite.all():
+            at = self.at[int(np.argmin(finite))]
+            raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
+        return entries
+
+    def q(self, entries: Array) -> Array:
+        """Returns the joint positions of the arm (n,) (rad, m)."""
+        joints = entries[self.at]
+        return np.where(self._turns, np.deg2rad(joints), joints)
+
+    def placed(self, q: Array, entries: Array) -> Array:
+        """Returns the entries with the joint positions q (n,) (rad, m) in their places."""
+        placed = entries.copy()
+        placed[self.at] = np.where(self._turns, np.rad2deg(q), q)
+        return placed
+
+    def limit(self, name: str, values: ArrayLike) -> Array:
+        """Returns limits (n,) (rad, m) of a number or one per joint of the arm, in the order of the names."""
+        limits = np.array(values, dtype=np.float64)
+        if limits.ndim == 0:
+            return self._radians(np.full(len(self.at), limits))
+        if limits.shape != (len(self.at),):
+            wanted = f"a number or {len(self.at)}, one per joint that moves the frame"
+            raise InvalidInputError(f"{name}: expected {wanted}, got shape {limits.shape}")
+        return self._radians(limits[np.argsort(np.argsort(self.at))])
+
+    def most(self, degrees: float) -> Array:
+        """Returns a bound (n,) (rad) of the joints that turn; joints that slide have none."""
+        return np.where(self._turns, np.deg2rad(degrees), np.inf)
+
+    def _radians(self, values: Array) -> Array:
+        return np.where(self._turns, np.deg2rad(values), values)
