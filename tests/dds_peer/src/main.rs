@@ -168,6 +168,7 @@ fn main() {
 
     let began = Instant::now();
     let mut here = [0.1, 0.4, -0.7];
+    let mut before = here;
     for k in 0..count {
         let there =
             [0.1 + 0.01 * (0.7 * k as f64).sin(), 0.4 + 0.02 * (k as f64).sin(), -0.7 + 0.02 * (1.3 * k as f64).cos()];
@@ -183,11 +184,17 @@ fn main() {
         loop {
             if asked.map_or(true, |at| at.elapsed() > Duration::from_millis(50)) {
                 states.write(state(&here), None).expect("written");
-                std::thread::sleep(Duration::from_millis(2)); // the state before the goal
+                std::thread::sleep(Duration::from_millis(5)); // the state before the goal
                 goals.write(pose(&there), None).expect("written");
                 asked = Some(Instant::now());
             }
             if let Ok(Some(sample)) = commands.take_next_sample() {
+                let repeated = complaint(sample.value(), &before, &here).is_none(); // a goal that was sent twice
+                                                                                    // The first goal may be matched before the first joint state: the node then knows the ones of before.
+                let early = k == 0 && complaint(sample.value(), &here, &there).is_some();
+                if repeated || early {
+                    continue;
+                }
                 if let Some(wrong) = complaint(sample.value(), &here, &there) {
                     println!("trajectory {k}: {wrong}");
                     std::process::exit(1);
@@ -200,6 +207,7 @@ fn main() {
             }
             std::thread::sleep(Duration::from_micros(500));
         }
+        before = here;
         here = there;
     }
     println!("{count} trajectories in {:.1} s", began.elapsed().as_secs_f64());
