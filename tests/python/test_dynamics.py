@@ -333,9 +333,8 @@ def test_friction_that_is_negative_is_told_by_name() -> None:
 
 
 def test_an_impossible_matrix_on_the_base_does_no_harm() -> None:
-    xml = PENDULUM.format(rod=BOB, swing="").replace(
-        '<link name="base"/>', f'<link name="base">{INERTIAL.format(mass=2, matrix="ixx='1' iyy='1' izz='3'")}</link>'
-    )
+    inertial = INERTIAL.format(mass=2, matrix="ixx='1' iyy='1' izz='3'")
+    xml = PENDULUM.format(rod=BOB, swing="").replace('<link name="base"/>', f'<link name="base">{inertial}</link>')
     robot = bik.Robot.from_urdf(xml)
     np.testing.assert_array_equal(robot.torques([0.5]), pendulum().torques([0.5]))
     np.testing.assert_allclose(robot.center_of_mass([0.0]), [0.0, 0.0, -0.5])
