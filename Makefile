@@ -5,8 +5,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-rust test-python zoo campaign property-tests soak dds-peer test-sdist release-check test-aarch64 miri audit lint \
-    lint-rust lint-python \
+.PHONY: help demo test test-rust test-python zoo campaign property-tests soak derivatives dds-peer test-sdist release-check test-aarch64 miri audit \
+    lint lint-rust lint-python \
     bench coverage docs docs-check papers
 
 # The jobs that `test` runs side by side are no jobs of cargo's.
@@ -48,6 +48,11 @@ property-tests:  ## the drawn tests of the core with cases of their own in every
 
 soak: $(VENV)/with-test  ## hours of load, killed writers, full disks, forks; SOAK="tracker rows" for some of them
 	PYTHONPATH=tests $(BIN)/python -m campaign soak $(SOAK) --long
+
+# JAX takes 400 MB, PyTorch up to 6 GB where its wheel brings CUDA.
+derivatives: $(VENV)/with-test  ## the tests of interop.jax and interop.torch, with both libraries
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[jax,torch]"
+	$(BIN)/python -m pytest tests/python/test_door_jax.py tests/python/test_door_torch.py tests/python/test_examples.py
 
 # Its crates are no part of the workspace, nor of its lock.
 dds-peer: $(VENV)/with-test  ## `beetle-ik ros` against RustDDS: 1,000 trajectories, restarts, damaged messages

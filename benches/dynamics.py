@@ -27,6 +27,7 @@ def turn(call: Callable[[], object], calls: int) -> float:
 
 
 def main() -> None:
+    """Prints the table."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--urdf", type=Path, default=ROBOTS / PANDA)
     options.add_argument("--tip", default="panda_link8")

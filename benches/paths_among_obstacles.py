@@ -5,8 +5,9 @@
 `--paths` holds the path problems of CppFlow (Morgan et al. 2024) as `NAME.csv` and `NAME.json`, `--robots` the data of
 MotionBenchMaker. Each path has poses that the hand must pass within 0.1 mm and 0.1 deg. The bodies are spheres, and the
 margin is 0.1 mm. `first` is the plan without a search for a better one. Coal judges every motion, at 2,000 instants.
-`length` is the sum of |change of angle| over joints and waypoints, as in that paper, and `step` the largest change of a joint from one waypoint to the next. A path that cannot
-be followed in one go is followed with `breaks=True`. Without the data the program says so and ends.
+`length` is the sum of |change of angle| over joints and waypoints, as in that paper, and `step` the largest change of a
+joint from one waypoint to the next. A path that cannot be followed in one go is followed with `breaks=True`.
+Without the data the program says so and ends.
 """
 
 # ruff: noqa: E402

@@ -2,9 +2,9 @@
 Payload and torques
 ===================
 
-How heavy may a part be that a Panda holds at arm's length? The torques that hold the
-arm up, in every posture between folded and stretched, say which motor gives in first.
-Then the torques of a motion, empty and with 3 kg in the hand.
+How heavy may a part be that a Panda holds at arm's length? The torques that hold
+the arm up, in every posture between folded and stretched, say how loaded its motors
+are. Then the torques of a motion, empty and with 3 kg in the hand.
 """
 
 import matplotlib.pyplot as plt
@@ -32,7 +32,9 @@ left.legend()
 # %%
 # The same motion, empty and with 3 kg, against the torque of the second motor.
 limits = bik.Limits(velocity=1.5, acceleration=5.0)
-plan = bik.plan_point_to_point(robot, start_q=folded, end_q=stretched, limits=limits)
+plan = bik.plan_point_to_point(
+    robot, start_q=folded, end_q=stretched, limits=limits
+)
 time = np.linspace(0.0, plan.trajectory.duration, 200)
 for mass in (0.0, 3.0):
     torques = plan.trajectory.torques(robot.with_payload(mass), time)

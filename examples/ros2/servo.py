@@ -44,7 +44,7 @@ class ServoNode(Node):
     def on_state(self, message: JointState) -> None:
         """Starts where the arm is; later the drives follow the commands."""
         self.states.read(message)
-        if self.servo.tracker is None and self.states.q is not None:
+        if self.servo.jog is None and self.states.q is not None:
             self.servo.start(self.states.q)
 
     def on_stop(

@@ -387,16 +387,30 @@ class Robot:
             acceleration: acceleration limits for `rated_limits`, likewise (m/s^2, rad/s^2).
         """
     @property
-    def inertias(self) -> list[Inertia]: ...
+    def inertias(self) -> list[Inertia]:
+        """Inertias of the links that have one, a list of `Inertia`, in the order of the file; payloads are not among them."""
     @property
-    def payloads(self) -> list[Inertia]: ...
+    def payloads(self) -> list[Inertia]:
+        """Payloads, a list of `Inertia`, each in the frame of the link that carries it."""
     @property
-    def gravity(self) -> _Array: ...
+    def gravity(self) -> _Array:
+        """Acceleration of free fall (3,) in the frame of the base (m/s^2): (0, 0, -9.81) unless `with_gravity` has changed it."""
     @property
-    def has_dynamics(self) -> bool: ...
+    def has_dynamics(self) -> bool:
+        """Whether `torques`, `mass_matrix`, `accelerations` and `center_of_mass` can be computed: the masses of the links are known and
+        possible, and every joint moves some. The errors of these calls say what is missing.
+        """
     @property
-    def torque_limit(self) -> _Array: ...
-    def with_inertias(self, inertias: Mapping[str, Inertia] | Sequence[Inertia]) -> Robot: ...
+    def torque_limit(self) -> _Array:
+        """Torque limits (n,) (N m, N): the effort of a file; inf where there is none, or an effort of zero. No call uses them unless
+        they are passed as limits.
+        """
+    def with_inertias(self, inertias: Mapping[str, Inertia] | Sequence[Inertia]) -> Robot:
+        """Returns a copy with these inertias of links: a dict {link: Inertia} or a list of `Inertia`; those of other links stay.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+        """
     def with_payload(
         self,
         mass: float,
@@ -404,8 +418,22 @@ class Robot:
         center: ArrayLike | None = None,
         matrix: ArrayLike | None = None,
         link: str | None = None,
-    ) -> Robot: ...
-    def with_gravity(self, gravity: ArrayLike) -> Robot: ...
+    ) -> Robot:
+        """Returns a copy that carries a payload, in place of one that the same link carries already. A mass of 0 takes it off. For what
+        a payload looks like, and may collide with, see `with_attached`.
+
+        Args:
+            mass: mass (kg).
+            center: centre of mass (3,) (m).
+            matrix: inertia matrix (3, 3) about the centre (kg m^2); None: a point.
+            link: the link that carries it, in whose frame center and matrix are; None: the tip, tool included.
+
+        Raises:
+            UnknownNameError: no link of that name; the message lists them.
+            InvalidInputError: a mass or matrix that no body has; several tips and no link.
+        """
+    def with_gravity(self, gravity: ArrayLike) -> Robot:
+        """Returns a copy under another acceleration of free fall (3,) (m/s^2), in the frame of the base."""
     def torques(
         self,
         q: ArrayLike,
@@ -413,10 +441,44 @@ class Robot:
         qdd: ArrayLike | None = None,
         *,
         wrench: ArrayLike | None = None,
-    ) -> _Array: ...
-    def mass_matrix(self, q: ArrayLike) -> _Array: ...
-    def accelerations(self, q: ArrayLike, qd: ArrayLike, torques: ArrayLike) -> _Array: ...
-    def center_of_mass(self, q: ArrayLike) -> _Array: ...
+    ) -> _Array:
+        """Returns the joint torques (n,) (N m; N for prismatic joints) that cause a motion, by inverse dynamics; (m, n) for q (m, n). At
+        rest they hold the arm up.
+
+        Friction and rotors of a file count; a joint at rest has no dry friction. With a floating base, its first six entries are the
+        force on it in the frame of the base, and what is conjugate to the rates of its rotation vector.
+
+        Args:
+            q: positions (n,) or (m, n).
+            qd: velocities (rad/s, m/s), of the shape of q; None: at rest.
+            qdd: accelerations (rad/s^2, m/s^2), of the shape of q; None: zero.
+            wrench: force (N) and moment (N m) that the surroundings exert on the tip, (6,) in the axes of the base, at the tip; (m, 6)
+                for each motion; (tips, 6) or (m, tips, 6) with several tips.
+
+        Raises:
+            InvalidInputError: a robot without dynamics; the message says which link or joint lacks a mass, or has an impossible one.
+        """
+    def mass_matrix(self, q: ArrayLike) -> _Array:
+        """Returns the mass matrix (n, n) at q (n,), (m, n, n) for q (m, n), rotors included: kg m^2; rows and columns of prismatic joints
+        kg m and kg. The kinetic energy is half of qd' M qd.
+
+        Raises:
+            InvalidInputError: a robot without dynamics.
+        """
+    def accelerations(self, q: ArrayLike, qd: ArrayLike, torques: ArrayLike) -> _Array:
+        """Returns the joint accelerations (n,) (rad/s^2, m/s^2) that torques (N m, N) cause, by forward dynamics: the inverse of
+        `torques`. All three arguments are (n,) or (m, n).
+
+        Raises:
+            InvalidInputError: a robot without dynamics, or a singular mass matrix.
+        """
+    def center_of_mass(self, q: ArrayLike) -> _Array:
+        """Returns the centre of all masses (3,) at q (n,), (m, 3) for q (m, n), in the frame of the base (m). Links that stand still and
+        payloads count.
+
+        Raises:
+            InvalidInputError: a robot without dynamics.
+        """
     def with_held(self, hold: Mapping[str, float]) -> Robot:
         """Returns a copy with other values (rad, m) of joints beside the chain, for example
         `with_held({"finger_joint": 0.04})`.
@@ -668,6 +730,9 @@ class Limits:
         tip_speed, tip_acceleration, tip_turn_speed: limits of the motion of the robot's tips, seen from its base: speed of the tip's
             origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
             limit. Planned motions keep them at every instant, not only at samples.
+        torque: limits of the torques of the joints (N m, N), a number or (n,); `robot.torque_limit` has those of the robot's file. None: not
+            limited. Planned motions keep them at every instant, with the masses, the payload and the gravity of the robot
+            and without the friction of its joints.
 
     Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
     are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;
@@ -3357,17 +3422,34 @@ class Body:
 
 @final
 class Inertia:
+    """Mass, centre of mass and inertia matrix of a link, in its frame.
+
+    Args:
+        link: name of the link.
+        mass: mass (kg).
+        center: centre of mass (3,) (m).
+        matrix: inertia matrix (3, 3) about the centre, in the axes of the link (kg m^2); None: a point.
+
+    Raises:
+        InvalidInputError: a negative mass, a matrix that is not symmetric, or principal moments that no body has: negative, or one
+            above the sum of the others. Rounding to three digits is taken.
+    """
+
     def __new__(
         cls, link: str, mass: float, center: ArrayLike | None = None, matrix: ArrayLike | None = None
     ) -> Inertia: ...
     @property
-    def link(self) -> str: ...
+    def link(self) -> str:
+        """Name of the link."""
     @property
-    def mass(self) -> float: ...
+    def mass(self) -> float:
+        """Mass (kg)."""
     @property
-    def center(self) -> _Array: ...
+    def center(self) -> _Array:
+        """Centre of mass (3,) in the frame of the link (m)."""
     @property
-    def matrix(self) -> _Array: ...
+    def matrix(self) -> _Array:
+        """Inertia matrix (3, 3) about the centre, in the axes of the link (kg m^2)."""
 
 @final
 class PreparedObstacles:
@@ -3855,6 +3937,7 @@ def plan_along_path(
     margin: float | None = None,
     self_collision: bool | None = None,
     accuracy: float | None = None,
+    breaks: bool = False,
     solver: _DerivativeFree | MultiStart | None = None,
     stop: Stop | None = None,
     seed: int = 0,
@@ -3885,6 +3968,9 @@ def plan_along_path(
             thousandth of the path's extent,
             plus the rise of the arc through neighbouring points where points are given; for "tpbso" 4 %. If the `task`
             has tolerances, the accuracy is part of them and must not exceed the smallest.
+        breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
+            as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
+            go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
         solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
             solver of its own.
         stop: budgets; None: the method's own.
@@ -3898,7 +3984,7 @@ def plan_along_path(
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two points, points out of reach, a start in collision, obstacles and
-            a robot without bodies, or a start_q at which `keep` does not hold.
+            a robot without bodies, `breaks` with "tpbso", no way beside the path at a break, or a start_q at which `keep` does not hold.
         LimitError: limits that contradict each other; a start farther outside them than start_slack.
         UnsupportedLimit: limits that vary in time, no acceleration limits with "timed", or jerk limits with "tpbso"
             (`Plan.retime` adds them).
@@ -4023,7 +4109,16 @@ class Plan:
     @property
     def moves(self) -> list[MoveReport]:
         """How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans."""
-    def torques(self, t: ArrayLike) -> _Array: ...
+    def torques(self, t: ArrayLike) -> _Array:
+        """Returns the joint torques (k, n) (N m; N for prismatic joints) of the plan at t (k,) (s), (n,) for a number, as `robot.torques`
+        does. Times outside the plan are clamped.
+
+        Raises:
+            InvalidInputError: a robot without dynamics.
+        """
+    @property
+    def breaks(self) -> list[Break]:
+        """Places where the tool leaves its path, with `breaks=True`, a list of `Break` in order; empty where it does not."""
     def retime(self, limits: Limits) -> Plan:
         """Returns the plan retimed for other limits: the same path, as fast as they allow. Clearance and accuracy remain, and what
         the plan keeps on the way, which is certified again.
@@ -4042,7 +4137,8 @@ class Plan:
         """
 
     def plot(self) -> Figure:
-        """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits; returns a matplotlib
+        """Draws the arm along its path, the cost over evaluations, and the joint motions with their limits, and torques if the robot
+        has dynamics; returns a matplotlib
         figure.
         """
 
@@ -4157,6 +4253,28 @@ class Wait(Move):
     def seconds(self) -> float:
         """How long (s)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
+
+@final
+class Break:
+    """A place where the tool leaves its path, and goes on with another posture of the arm or farther along."""
+
+    @property
+    def at(self) -> float:
+        """Where the tool leaves the path: the index of a point, with the part of the way to the next one (12.5 is halfway between points
+        12 and 13); for a `Path` its time (s).
+        """
+    @property
+    def until(self) -> float:
+        """Where it goes on, counted alike: at the same place, where nothing is left out; at the end of the path, where it does not come back."""
+    @property
+    def reason(self) -> str:
+        """Why the arm cannot go on along the path: a joint at its limit, a singularity, two bodies, or a point out of reach."""
+    @property
+    def start(self) -> float:
+        """When the tool leaves the path (s)."""
+    @property
+    def end(self) -> float:
+        """When it is back (s)."""
 
 @final
 class MoveReport:
@@ -4616,7 +4734,13 @@ class Trajectory:
         """Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped."""
     def sample(self, dt: float) -> tuple[_Array, _Array, _Array, _Array]:
         """Returns (time, q, qd, qdd) every `dt` (s) and at the end: (k,), and (k, n) each."""
-    def torques(self, robot: Robot, t: ArrayLike) -> _Array: ...
+    def torques(self, robot: Robot, t: ArrayLike) -> _Array:
+        """Returns the joint torques (k, n) (N m; N for prismatic joints) that cause this motion of `robot` at t (k,) (s), (n,) for a number,
+        as `robot.torques` does. Times outside the trajectory are clamped.
+
+        Raises:
+            InvalidInputError: a robot without dynamics, or with another number of joints.
+        """
     def then(self, motion: Trajectory, *, pause: float = 0.0) -> Trajectory:
         """Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends."""
     def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None:

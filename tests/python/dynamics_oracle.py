@@ -1,4 +1,7 @@
-"""Dynamics by Pinocchio, in the conventions of this library: mimic joints are reflected, and joints beside the chain stand still."""
+"""Dynamics by Pinocchio, in the conventions of this library.
+
+Mimic joints are reflected to their masters, and joints beside the chain stand still.
+"""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping

@@ -86,6 +86,7 @@ SPOILED = {
         "a tick exceeds the velocity limit on the way inside",
     ),
     "plants": ("found = Changed(found, q=10.0 * found.q)", "the velocity is beyond its limit"),
+    "followed_targets": ("ways = 1.001 * ways", "it is not the pseudoinverse"),
     "poses": (
         "poses = poses + 1e-9",
         "pose differs",

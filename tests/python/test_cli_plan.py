@@ -119,3 +119,20 @@ def test_the_position_of_an_end_may_come_first() -> None:
     assert free.exit_code == 0, free.output
     end = json.loads(free.stdout)["end_q"]
     np.testing.assert_allclose(bik.Robot.named("planar5").fk(end)[:3, 3], [1.5, 1.0, 0.0], atol=1e-5)
+
+
+def test_breaks_of_a_path_are_printed(tmp_path: Path) -> None:
+    file = tmp_path / "path.csv"
+    file.write_text("x,y,z\n0.5,-0.4,0.3\n1.2,0,0.3\n0.5,0.4,0.3\n")
+
+    def along(*more: str) -> Result:
+        return CliRunner().invoke(app, ["plan", "along-path", "ur5e", "--path", str(file), *LIMITS, *more])
+
+    refused = along()
+    assert refused.exit_code != 0
+    assert "; --breaks, which lets the tool leave the path there and go on" in refused.output.replace("\n", " ")
+    done = along("--breaks", "--json")
+    [only] = json.loads(done.stdout)["breaks"]
+    assert only["at"] < only["until"]
+    assert "cannot be reached" in only["reason"]
+    assert "break 0" in along("--breaks").output

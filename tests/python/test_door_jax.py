@@ -2,9 +2,11 @@
 # ruff: noqa: E501 -- messages are in one piece
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -337,3 +339,10 @@ def test_without_jax_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) ->
     with pytest.raises(bik.BeetleIkError) as caught:
         door.fk(PANDA)
     assert str(caught.value) == "interop.jax needs jax: pip install 'beetle-ik[jax]'"
+
+
+def test_the_block_of_the_page_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "derivatives.md"
+    blocks = re.findall(r"^```py\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    (block,) = (block for block in blocks if block.startswith("import jax\n"))
+    exec(compile(block, page.name, "exec"), {})

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from generated import chain
 from gripper_arm import GRIPPER_ARM, READY
 
 import beetle_ik as bik
 from beetle_ik.interop import maniskill as mplib
 from beetle_ik.interop.maniskill import Pose, fcl
 from beetle_ik.interop.maniskill.screw import rotation_vector, screw
+from beetle_ik.interop.urdf_joints import moving_joints
 
 NAMES = [*(f"joint{i}" for i in range(1, 8)), "left_finger_joint", "right_finger_joint"]
 ARM = bik.Robot.from_urdf(GRIPPER_ARM, tip="hand")
@@ -409,12 +411,30 @@ def test_the_gripper_is_where_it_is_said_to_be() -> None:
             "the Planner of beetle_ik has no 'pinocchio_model': use planner.robot.arm_at(qpos), whose fk and jacobian "
             "take the joints of the move group",
         ),
+        (
+            lambda: planner().robot.get_pinocchio_model(),
+            AttributeError,
+            "there is no Pinocchio model: use arm_at(qpos), whose fk and jacobian take the move group",
+        ),
     ],
 )
 def test_wrong_calls_are_named(call: Callable[[], object], error: type[Exception], message: str) -> None:
     with pytest.raises(error) as caught:
         call()
     assert str(caught.value) == message
+
+
+def test_obstacles_do_not_pass_unseen_by_a_robot_without_shapes() -> None:
+    bare = planner(collision=None)
+    assert bare.plan_pose(ABOVE, START)["status"] == "Success"
+    bare.planning_world.add_object("blue", BLUE_BOX)
+    for call in (bare.plan_pose, bare.plan_screw, bare.IK):
+        with pytest.raises(bik.InvalidInputError) as caught:
+            call(ABOVE, START)
+        assert str(caught.value) == (
+            "the robot 'gripper_arm' has no collision shapes, so it cannot keep clear of 1 obstacle: "
+            'give a URDF with shapes and collision="hulls"'
+        )
 
 
 def test_shapes_that_are_not_read_are_told(tmp_path: Path) -> None:
@@ -435,6 +455,16 @@ def test_an_srdf_beside_the_file_is_found(tmp_path: Path) -> None:
     plan = mplib.Planner(tmp_path / "arm.urdf", "hand")
     assert plan.srdf == tmp_path / "arm.srdf"
     assert ("link5", "hand") not in plan.robot.arm_at(START).collision_pairs
+
+
+@pytest.mark.parametrize("place", ["root", "inside", "branch"])
+def test_joints_are_in_the_order_of_pinocchio(place: str) -> None:
+    pinocchio = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
+    for seed in range(10):
+        urdf, _, _ = chain(5, place, seed)
+        assert list(moving_joints(urdf)) == list(pinocchio.buildModelFromXML(urdf).names)[1:]
+    assert moving_joints(GRIPPER_ARM)["joint4"] == (-3.07, -0.07)
+    assert moving_joints(GRIPPER_ARM)["right_finger_joint"] == (0.0, 0.04)
 
 
 # --- mplib itself -------------------------------------------------------------------------------

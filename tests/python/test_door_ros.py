@@ -1,6 +1,7 @@
 """The node `beetle-ik ros` in a process of its own, and cyclonedds here; skipped where that or loopback is missing."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -270,6 +271,12 @@ def test_either_side_may_restart(domain: int) -> None:
     for _ in range(2):
         exchange(Peer(domain))
     assert node.ends() == 0
+
+
+def test_the_block_of_the_page_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "ros2_without_ros.md"
+    (block,) = re.findall(r"^```py\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    exec(compile(block, page.name, "exec"), {})
 
 
 def test_the_command_says_what_it_needs(tmp_path: Path) -> None:

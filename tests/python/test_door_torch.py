@@ -1,6 +1,8 @@
 """`interop.torch` by gradcheck and against the plain calls. Skipped if PyTorch is not installed."""
 
+import re
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -115,3 +117,10 @@ def test_without_torch_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(bik.BeetleIkError) as caught:
         door.solve(PANDA)
     assert str(caught.value) == "interop.torch needs torch: pip install 'beetle-ik[torch]'"
+
+
+def test_the_block_of_the_page_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "derivatives.md"
+    blocks = re.findall(r"^```py\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    (block,) = (block for block in blocks if block.startswith("import torch\n"))
+    exec(compile(block, page.name, "exec"), {})

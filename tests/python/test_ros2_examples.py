@@ -250,8 +250,8 @@ def test_the_servo_reaches_the_pose_within_the_limits(servo: Any) -> None:
 def test_a_stamped_pose_is_as_old_as_its_stamp_says(servo: Any) -> None:
     servo.callbacks["joint_states"](STATE)
     seen = []
-    follow = servo.servo.tracker.step
-    servo.servo.tracker = SimpleNamespace(
+    follow = servo.servo.jog.tracker.step
+    servo.servo.jog.tracker = SimpleNamespace(
         step=lambda *target, **options: seen.append(options) or follow(*target), time=3.0, dt=0.01
     )
     servo.now = 5_000_000_000

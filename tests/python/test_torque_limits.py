@@ -110,6 +110,22 @@ def test_a_payload_slows_a_motion_and_gravity_may_come_from_anywhere() -> None:
     assert (np.abs(tilted.torques(*motion.at(np.linspace(0, motion.duration, 3000)))) <= motors * (1 + 1e-9)).all()
 
 
+@pytest.mark.parametrize("jerk", [None, 300.0])
+def test_friction_counts_where_it_acts_against_the_motion(jerk: float | None) -> None:
+    rubbing = bik.Robot.from_urdf(ARM.replace("<limit", '<dynamics damping="1.5" friction="0.7"/><limit'))
+    rng, slower = np.random.default_rng(8), 0
+    for _ in range(5):
+        path = waypoints(rng)
+        motors = np.maximum(1.6 * np.abs(ROBOT.torques(path)).max(axis=0), 12)
+        motion, free = (bik.time_optimal(path, limits(motors, jerk=jerk), robot=robot) for robot in (rubbing, ROBOT))
+        t = np.linspace(0, motion.duration, 3000)
+        assert (np.abs(rubbing.torques(*motion.at(t))) <= motors * (1 + 1e-9)).all()
+        assert (np.abs(ROBOT.torques(*motion.at(t))) <= motors * (1 + 1e-9)).all()
+        assert motion.duration >= free.duration * (1 - 1e-3)
+        slower += motion.duration > 1.01 * free.duration
+    assert slower
+
+
 def test_a_path_that_cannot_be_held_is_refused_with_place_and_joint() -> None:
     stretched = [[0, -1.2, 0, 0, 0], [0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0]]
     expected = r"at s = .* of the path joint 'j1' needs .* N m to hold the arm, its limit is 20.00 N m"

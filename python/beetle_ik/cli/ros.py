@@ -1,6 +1,7 @@
 """`beetle-ik ros`: a ROS 2 node without a ROS installation."""
 
 import os
+import signal
 from typing import Annotated, Any
 
 import typer
@@ -69,6 +70,8 @@ def ros(
         Topics(description, states, target_pose, target_twist, goal, obstacles, commands, planned),
         _say,
     )
+    for ending in (signal.SIGINT, signal.SIGTERM):  # a background process may have been started without the first
+        signal.signal(ending, signal.default_int_handler)
     try:
         node.run()
     except KeyboardInterrupt:

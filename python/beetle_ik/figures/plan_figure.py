@@ -99,7 +99,7 @@ def rows(plan: Plan) -> int:
 
 
 def draw(figure: Figure, plan: Plan) -> None:
-    """Draws the arm along its path (left), the search history below if there is one, joints, tip speed and torques (right)."""
+    """Draws the arm along its path and the search history, if any (left), and joints, tip speed and torques (right)."""
     halves = figure.add_gridspec(1, 2, width_ratios=[1.0, 1.15])
     left, right = (figure.add_subfigure(halves[0, i]) for i in range(2))  # each has its own margins
     grid = left.add_gridspec(_ROWS, 1)

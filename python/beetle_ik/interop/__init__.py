@@ -25,10 +25,12 @@ Doors have the calls of another library, `interop.lerobot` and `interop.maniskil
 `interop.teleop` velocities of a joystick, `interop.retarget` points of a hand or body.
 """
 
+from . import jax as jax
 from . import lerobot as lerobot
 from . import maniskill as maniskill
 from . import retarget as retarget
 from . import teleop as teleop
+from . import torch as torch
 from .episodes import to_lerobot
 from .moveit import to_moveit
 from .mujoco import from_mujoco

@@ -81,7 +81,7 @@ def solve(robot: Robot, *, damping: float = 1e-4, success: bool = False) -> Call
 
     The derivative is that of the implicit function theorem: the joints follow the target by J^+, the pseudoinverse of
     the Jacobian, the least motion of a redundant arm. By the start it is I - J^+ J, what a redundant arm is free to do:
-    zero for others. For a redundant arm, both are exact where the start is a solution, as in a stream of
+    zero for others. For a redundant arm, both are exact where the start is a solution, and nearly so in a stream of
     targets; from a start farther away the search itself adds curvature, which is left out. Of a pose, only rigid
     motions count: derivatives by its 16 numbers are projected onto these.
 

@@ -208,7 +208,8 @@ class _Reader:
             inner.append(f"<limit effort='{effort!r}'/>")
         dof = model.jnt_dofadr[joint]
         damping, friction, rotor = (
-            float(np.ravel(values[dof])[0]) for values in (model.dof_damping, model.dof_frictionloss, model.dof_armature)
+            float(np.ravel(values[dof])[0])
+            for values in (model.dof_damping, model.dof_frictionloss, model.dof_armature)
         )
         if damping or friction or rotor:
             inner.append(f"<dynamics damping='{damping!r}' friction='{friction!r}' armature='{rotor!r}'/>")
@@ -231,7 +232,7 @@ class _Reader:
         return float(np.abs(model.actuator_gear[drives, 0]) @ forces) or float("inf")
 
     def gravity(self, base: str) -> NDArray[np.float64]:
-        """Returns the acceleration of free fall (3,) in the frame of a body, where the model has it at its reference positions."""
+        """Returns the acceleration of free fall (3,) in the frame of a body at the reference positions of the model."""
         data = self.mujoco.MjData(self.model)
         self.mujoco.mj_kinematics(self.model, data)
         turn = np.array(data.xmat[self.bodies.index(base)]).reshape(3, 3) if base in self.bodies else np.eye(3)

@@ -10,6 +10,7 @@ from . import (
     clearance,
     command_line,
     dead_ends,
+    derivatives,
     described,
     doors,
     dynamics,
@@ -39,6 +40,7 @@ from . import (
 
 _MODULES = (
     kinematics,
+    derivatives,
     dynamics,
     solving,
     round_poses,

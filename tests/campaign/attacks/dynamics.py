@@ -29,7 +29,9 @@ class Torques(Attack):
             joint["rub"] = tuple(map(float, random.choice([0.0, 0.0, 0.3, 1.0], 2)))
         arms.put(joints, random, hard, _STATES)
         for joint in joints:
-            joint["rates"] = [arms.triple(random.choice([0.0, 0.0, 1.0, -1.0, random.normal()], 3)) for _ in range(_STATES)]
+            joint["rates"] = [
+                arms.triple(random.choice([0.0, 0.0, 1.0, -1.0, random.normal()], 3)) for _ in range(_STATES)
+            ]
         # The last link has a mass, so that no joint moves none.
         joints[-1]["body"] = _body(random, False)
         return {"joints": joints, "branch": branch}

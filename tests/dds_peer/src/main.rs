@@ -7,27 +7,29 @@ use std::time::{Duration, Instant};
 
 use rustdds::no_key::{DataReader, DataWriter};
 use rustdds::policy::{Durability, History, Reliability};
-use rustdds::{CDRDeserializerAdapter, CDRSerializerAdapter, DomainParticipant, QosPolicies, QosPolicyBuilder, TopicKind};
+use rustdds::{
+    CDRDeserializerAdapter, CDRSerializerAdapter, DomainParticipant, QosPolicies, QosPolicyBuilder, TopicKind,
+};
 use serde::{de::DeserializeOwned, Deserialize, Serialize};
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Time {
     sec: i32,
     nanosec: u32,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Header {
     stamp: Time,
     frame_id: String,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Text {
     data: String,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct JointState {
     header: Header,
     name: Vec<String>,
@@ -36,14 +38,14 @@ struct JointState {
     effort: Vec<f64>,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct PoseStamped {
     header: Header,
     position: [f64; 3],
     orientation: [f64; 4],
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct Point {
     positions: Vec<f64>,
     velocities: Vec<f64>,
@@ -52,7 +54,7 @@ struct Point {
     time_from_start: Time,
 }
 
-#[derive(Serialize, Deserialize, Clone, Default)]
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
 struct JointTrajectory {
     header: Header,
     joint_names: Vec<String>,
@@ -63,7 +65,11 @@ struct JointTrajectory {
 fn quality(reliable: bool, latched: bool, depth: i32) -> QosPolicies {
     let blocked = rustdds::Duration::from_millis(100);
     QosPolicyBuilder::new()
-        .reliability(if reliable { Reliability::Reliable { max_blocking_time: blocked } } else { Reliability::BestEffort })
+        .reliability(if reliable {
+            Reliability::Reliable { max_blocking_time: blocked }
+        } else {
+            Reliability::BestEffort
+        })
         .durability(if latched { Durability::TransientLocal } else { Durability::Volatile })
         .history(History::KeepLast { depth })
         .build()
@@ -74,11 +80,14 @@ struct Graph {
 }
 
 impl Graph {
-    fn writer<T: Serialize>(&self, topic: &str, kind: &str, qos: &QosPolicies) -> DataWriter<T, CDRSerializerAdapter<T>> {
-        let topic = self
-            .participant
-            .create_topic(format!("rt/{topic}"), kind.into(), qos, TopicKind::NoKey)
-            .expect("a topic");
+    fn writer<T: Serialize>(
+        &self,
+        topic: &str,
+        kind: &str,
+        qos: &QosPolicies,
+    ) -> DataWriter<T, CDRSerializerAdapter<T>> {
+        let topic =
+            self.participant.create_topic(format!("rt/{topic}"), kind.into(), qos, TopicKind::NoKey).expect("a topic");
         let publisher = self.participant.create_publisher(qos).expect("a publisher");
         publisher.create_datawriter_no_key(&topic, None).expect("a writer")
     }
@@ -89,10 +98,8 @@ impl Graph {
         kind: &str,
         qos: &QosPolicies,
     ) -> DataReader<T, CDRDeserializerAdapter<T>> {
-        let topic = self
-            .participant
-            .create_topic(format!("rt/{topic}"), kind.into(), qos, TopicKind::NoKey)
-            .expect("a topic");
+        let topic =
+            self.participant.create_topic(format!("rt/{topic}"), kind.into(), qos, TopicKind::NoKey).expect("a topic");
         let subscriber = self.participant.create_subscriber(qos).expect("a subscriber");
         subscriber.create_datareader_no_key(&topic, None).expect("a reader")
     }
@@ -129,7 +136,9 @@ fn complaint(sent: &JointTrajectory, from: &[f64], to: &[f64]) -> Option<String>
     match () {
         () if sent.joint_names != JOINTS => Some(format!("joints {:?}", sent.joint_names)),
         () if sent.points.len() < 2 => Some(format!("{} points", sent.points.len())),
-        () if !near(&sent.points[0].positions, from) => Some(format!("begins at {:?}, not {from:?}", sent.points[0].positions)),
+        () if !near(&sent.points[0].positions, from) => {
+            Some(format!("begins at {:?}, not {from:?}", sent.points[0].positions))
+        }
         () if !near(&sent.points[sent.points.len() - 1].positions, to) => Some("ends elsewhere".into()),
         () if times[0] != 0.0 || times.windows(2).any(|pair| pair[1] <= pair[0]) => Some("times do not grow".into()),
         () => None,
@@ -145,7 +154,8 @@ fn main() {
     let graph = Graph { participant: DomainParticipant::new(domain).expect("a participant") };
     let (standard, fresh) = (quality(true, false, 10), quality(false, false, 5));
     let (state_type, pose_type) = ("sensor_msgs::msg::dds_::JointState_", "geometry_msgs::msg::dds_::PoseStamped_");
-    let description = graph.writer::<Text>("robot_description", "std_msgs::msg::dds_::String_", &quality(true, true, 1));
+    let description =
+        graph.writer::<Text>("robot_description", "std_msgs::msg::dds_::String_", &quality(true, true, 1));
     let states = graph.writer::<JointState>("joint_states", state_type, &fresh);
     let damaged = graph.writer::<Text>("joint_states", state_type, &fresh); // bytes of another type
     let goals = graph.writer::<PoseStamped>("beetle/goal_pose", pose_type, &standard);
@@ -159,7 +169,8 @@ fn main() {
     let began = Instant::now();
     let mut here = [0.1, 0.4, -0.7];
     for k in 0..count {
-        let there = [0.1 + 0.01 * (0.7 * k as f64).sin(), 0.4 + 0.02 * (k as f64).sin(), -0.7 + 0.02 * (1.3 * k as f64).cos()];
+        let there =
+            [0.1 + 0.01 * (0.7 * k as f64).sin(), 0.4 + 0.02 * (k as f64).sin(), -0.7 + 0.02 * (1.3 * k as f64).cos()];
         if k % 10 == 5 {
             let unequal = JointState { name: vec!["lift".into()], ..JointState::default() };
             let undefined = JointState { name: vec!["lift".into()], position: vec![f64::NAN], ..JointState::default() };

@@ -4,8 +4,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use ikcore::dynamics::Inertia;
-use ikcore::nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Rotation3, Vector3};
 use ikcore::load::UrdfOptions;
+use ikcore::nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Rotation3, Vector3};
 use ikcore::rng::{self, LazyRng};
 use ikcore::robot::{BaseLimits, MobileBase, Motions, Robot};
 

@@ -29,7 +29,7 @@ impl<'a> HoldCheck<'a> {
         Self { torques, point: torques.point(), bend: torques.bend_scratch(), rests }
     }
 
-    /// Whether the joints can hold the arm everywhere from one configuration to another.
+    /// Whether the joints can hold the arm everywhere from one configuration to another, and move it against dry friction.
     pub fn holds_along(&mut self, from: &[f64], to: &[f64]) -> bool {
         let line = Line { from, to };
         let (start, end) = (self.hold(&line, 0.0), self.hold(&line, 1.0));
@@ -46,7 +46,7 @@ impl<'a> HoldCheck<'a> {
         let is_bounded = self.torques.limits().iter().enumerate().all(|(joint, limit)| {
             let hold = control_points([start[joint], middle[joint], end[joint]]);
             let most = hold.into_iter().fold(0.0_f64, |most, hold| most.max(hold.abs()));
-            most + self.rests[joint][2] <= limit * (1.0 - TIGHT)
+            most + self.rests[joint][2] + self.torques.friction(joint).dry <= limit * (1.0 - TIGHT)
         });
         is_bounded
             || depth < DEEPEST

@@ -3,6 +3,7 @@
 use super::tip_jet::{TipElements, TipJet};
 use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Frame;
+use crate::math::bernstein::bernstein;
 use crate::math::majorant::Majorant;
 use crate::robot::Robot;
 use crate::trajectory::{Coefficients, POWERS, derivative_bounds};
@@ -59,6 +60,21 @@ impl JointSpan {
                 *q = *q * x + c;
             }
         }
+    }
+
+    /// The derivative of a joint by x, at x on \[-1, 1\].
+    pub fn rate(&self, joint: usize, x: f64) -> f64 {
+        self.rate_powers(joint).iter().rev().fold(0.0, |sum, c| sum * x + c)
+    }
+
+    /// A range that holds the derivative of a joint by x everywhere on \[-1, 1\].
+    pub fn rate_range(&self, joint: usize) -> [f64; 2] {
+        let points = bernstein(&self.rate_powers(joint));
+        [points.into_iter().fold(f64::INFINITY, f64::min), points.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    fn rate_powers(&self, joint: usize) -> [f64; POWERS - 1] {
+        std::array::from_fn(|k| (k + 1) as f64 * self.joints[joint][k + 1])
     }
 
     /// Bounds of the Taylor coefficients of the derivative of a joint, at every point of the interval.

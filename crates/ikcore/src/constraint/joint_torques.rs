@@ -2,7 +2,7 @@
 //!
 //! Along a path q(s) the torque of a joint is a(s) d2s/dt2 + b(s) (ds/dt)^2 + g(s). Over an interval each factor is within a rest
 //! ([`TorqueBend`]) of the parabola through its values at both ends and in the middle, and a parabola is within its Bernstein coefficients.
-//! The friction of joints is not counted.
+//! Friction is added where it acts against the motion; where it would help, it is not counted on.
 
 use std::sync::Arc;
 
@@ -25,6 +25,37 @@ pub(crate) struct JointTorques {
     bend: Arc<TorqueBend>,
     /// One per joint (N m, N), infinite without.
     limits: Vec<f64>,
+}
+
+/// Friction of a joint: dry (N m, N), and per velocity (N m s/rad, N s/m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Friction {
+    pub dry: f64,
+    pub damping: f64,
+}
+
+/// Friction along a path, against a torque of one sign: at most `at_rest` + `per_square` (ds/dt)^2.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Drag {
+    pub at_rest: f64,
+    pub per_square: f64,
+}
+
+impl Friction {
+    /// Bounds the friction of a joint that moves at up to `rate` per ds/dt against torques that leave `room`, where (ds/dt)^2 is at most
+    /// `square`: its root is below any of its tangents.
+    pub fn drag(&self, rate: f64, room: f64, square: f64) -> Drag {
+        if !(rate > 0.0) {
+            return Drag::default();
+        }
+        let viscous = self.damping * rate;
+        if viscous == 0.0 {
+            return Drag { at_rest: self.dry, per_square: 0.0 };
+        }
+        // The tangent where the speed is largest, or where friction at rest takes half of the room.
+        let speed = square.sqrt().min((room - self.dry).max(0.0) / viscous);
+        Drag { at_rest: self.dry + 0.5 * viscous * speed, per_square: 0.5 * viscous / speed }
+    }
 }
 
 /// Terms of the torques of all joints at a point of a path.
@@ -103,6 +134,12 @@ impl JointTorques {
     /// The limits (n,), infinite where there is none.
     pub fn limits(&self) -> &[f64] {
         &self.limits
+    }
+
+    /// Friction of a joint.
+    pub fn friction(&self, joint: usize) -> Friction {
+        let drive = &self.dynamics.drives()[joint];
+        Friction { dry: drive.friction, damping: drive.damping }
     }
 
     /// Number of joints.
@@ -222,8 +259,13 @@ impl JointTorques {
         span.write(0.0, [&mut point.q, &mut point.first, &mut point.second]);
         self.write_hold(&mut point, &mut terms.hold);
         self.write_square(&mut point, &mut terms);
-        let total = terms.hold.iter().zip(&terms.of_square).map(|(hold, square)| (hold + square).abs());
-        total.zip(&self.limits).map(|(torque, limit)| torque / limit).collect()
+        let share = |(joint, limit): (usize, &f64)| {
+            let (torque, rate) = (terms.hold[joint] + terms.of_square[joint], point.first[joint]);
+            let Friction { dry, damping } = self.friction(joint);
+            let friction = if rate == 0.0 { 0.0 } else { dry.copysign(rate) + damping * rate };
+            torque.abs().max((torque + friction).abs()) / limit
+        };
+        self.limits.iter().enumerate().map(share).collect()
     }
 }
 
@@ -282,13 +324,24 @@ impl IntervalFactor for TorqueFactor<'_> {
             let hold = control_points(nodes.each_ref().map(|terms| terms.hold[joint]));
             let [_, rest_of_motion, rest_of_hold] = rests[joint];
             let rest = [per_second * rest_of_motion, rest_of_hold];
-            let factor = |of_motion: f64, hold: f64, rest: [f64; 2]| match judged {
-                Judged::Slowdown => slowdown(of_motion, hold, rest, *limit),
-                Judged::Share(_) => ((of_motion + hold).abs() + rest[0] + rest[1]) / limit,
+            let friction = torques.friction(joint);
+            let factor = |of_motion: f64, hold: f64, rest: [f64; 2], [slowest, fastest]: [f64; 2]| {
+                let of_side = |sign: f64, rate: f64| {
+                    let dry = if rate > 0.0 { friction.dry } else { 0.0 };
+                    let viscous = friction.damping * rate.max(0.0);
+                    let [inertial, left] = [sign * of_motion + rest[0], limit - sign * hold - rest[1] - dry];
+                    match judged {
+                        Judged::Slowdown => slowdown(inertial, viscous, left),
+                        Judged::Share(_) => (inertial + viscous + limit - left) / limit,
+                    }
+                };
+                of_side(1.0, fastest).max(of_side(-1.0, -slowest))
             };
-            seen = seen.max(factor(per_second * nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2]));
+            let rate = span.rate(joint, 0.0) / half;
+            seen = seen.max(factor(per_second * nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2], [rate; 2]));
+            let rates = span.rate_range(joint).map(|rate| rate / half);
             for (of_motion, hold) in of_motion.into_iter().zip(hold) {
-                bound = bound.max(factor(of_motion, hold, rest));
+                bound = bound.max(factor(of_motion, hold, rest, rates));
             }
         }
         [seen, bound.max(seen)]
@@ -300,17 +353,11 @@ pub(crate) fn control_points([start, middle, end]: [f64; 3]) -> [f64; 3] {
     [start, 2.0 * middle - 0.5 * (start + end), end]
 }
 
-/// The slowdown of a motion with the torque `of_motion` / slowdown^2 + `hold`, both up to their rests.
-fn slowdown(of_motion: f64, hold: f64, [rest_of_motion, rest_of_hold]: [f64; 2], limit: f64) -> f64 {
-    let of_side = |sign: f64| {
-        let (needed, left) = (sign * of_motion + rest_of_motion, limit - sign * hold - rest_of_hold);
-        if left <= 0.0 {
-            f64::INFINITY
-        } else if needed <= 0.0 {
-            0.0
-        } else {
-            needed / left
-        }
-    };
-    of_side(1.0).max(of_side(-1.0)).sqrt()
+/// The slowdown of a motion that needs the torque `inertial` / slowdown^2 + `viscous` / slowdown, of which `left` is there.
+fn slowdown(inertial: f64, viscous: f64, left: f64) -> f64 {
+    if left <= 0.0 {
+        return f64::INFINITY;
+    }
+    let half = 0.5 * viscous;
+    (half + (half * half + inertial.max(0.0) * left).sqrt()) / left
 }

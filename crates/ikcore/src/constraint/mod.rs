@@ -34,7 +34,7 @@ mod torque_bend;
 
 pub(crate) use hold_check::HoldCheck;
 pub(crate) use joint_span::JointSpan;
-pub(crate) use joint_torques::{JointTorques, TooHeavy, TorqueExcess, TorquePoint, TorqueTerms, control_points};
+pub(crate) use joint_torques::{Drag, JointTorques, TooHeavy, TorqueExcess, TorquePoint, TorqueTerms, control_points};
 pub use keep::Keep;
 pub(crate) use keep::{KeepRow, refuse_broken};
 pub(crate) use keep_sweep::KeepScratch;

@@ -6,6 +6,8 @@ use super::scratch::DynamicsScratch;
 
 /// Square of a pivot, relative to the entry of the mass matrix, below which its joint cannot be told from the others.
 const SINGULAR: f64 = 1e-13;
+/// Entry of the mass matrix, relative to the largest, that is rounding.
+const ROUNDING: f64 = 1e-16;
 
 impl Dynamics {
     /// Replaces the joint torques in `torques` by the accelerations that they cause at `q` and `qd` (rad/s^2, m/s^2), with the
@@ -38,6 +40,7 @@ impl Dynamics {
 /// Solves A x = b in place for a symmetric positive definite matrix, which becomes its Cholesky factor.
 fn solve(matrix: &mut [f64], b: &mut [f64]) -> Result<(), usize> {
     let n = b.len();
+    let rounding = ROUNDING * (0..n).fold(0.0, |largest, j| matrix[j * n + j].max(largest));
     for j in 0..n {
         let (above, from_j) = matrix.split_at_mut(j * n);
         let entry = from_j[j];
@@ -46,7 +49,7 @@ fn solve(matrix: &mut [f64], b: &mut [f64]) -> Result<(), usize> {
             from_j[k] = (from_j[k] - sum) / above[k * n + k];
         }
         let pivot = entry - from_j[..j].iter().map(|x| x * x).sum::<f64>();
-        if !(pivot > SINGULAR * entry) {
+        if !(pivot > SINGULAR * entry + rounding) {
             return Err(j);
         }
         from_j[j] = pivot.sqrt();

@@ -45,7 +45,8 @@ impl Inertia {
         }
     }
 
-    /// Returns the reason why no body has this inertia; `None` if one has. Rounding of files is taken.
+    /// Returns the reason why no body has this inertia; `None` if one has. Rounding of files is taken, and a matrix without a mass, which files
+    /// give to frames of tools.
     pub fn fault(&self) -> Option<String> {
         let Self { mass, center, matrix } = self;
         let flat = matrix.as_flattened();
@@ -64,9 +65,6 @@ impl Inertia {
                 let problem = format!("{} = {above} differs from {} = {below}", names.0, names.1);
                 return Some(format!("the inertia matrix is not symmetric: {problem}"));
             }
-        }
-        if *mass == 0.0 && size > NEGLIGIBLE {
-            return Some("the mass is 0, but the inertia matrix is not".into());
         }
         let moments = principal_moments(matrix);
         let [least, middle, largest] = moments;

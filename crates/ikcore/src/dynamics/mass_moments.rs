@@ -40,10 +40,8 @@ impl MassMoments {
     /// Returns the inertia with these moments.
     pub fn inertia(&self) -> Inertia {
         let Self { mass, first, second } = self;
-        if *mass == 0.0 {
-            return Inertia::point(0.0, [0.0; 3]);
-        }
-        let center = first.map(|k| k / mass);
+        // Files give a matrix, but no mass, to frames of tools.
+        let center = if *mass == 0.0 { [0.0; 3] } else { first.map(|k| k / mass) };
         let about_center = |i: usize, j: usize| second[i][j] - mass * center[i] * center[j];
         let trace: f64 = (0..3).map(|i| about_center(i, i)).sum();
         let entry = |i: usize, j: usize| if i == j { trace - about_center(i, i) } else { -about_center(i, j) };

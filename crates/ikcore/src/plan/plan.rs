@@ -199,7 +199,11 @@ impl Plan {
     /// Returns the outcome and advice, as a sentence.
     pub fn message(&self) -> Message {
         if let Some(obstruction) = &self.obstruction {
-            let advice = if self.reference.is_some() { message![ADVICE_ALONG_PATH, ", or ", Setting::Breaks] } else { self.advice() };
+            let advice = if self.reference.is_some() {
+                message![ADVICE_ALONG_PATH, ", or ", Setting::Breaks]
+            } else {
+                self.advice()
+            };
             return match self.own_points {
                 Some(measured) => message![format!("no clear plan for {obstruction}; "), measured.advice()],
                 None => message![format!("no clear plan for {obstruction}; "), advice],

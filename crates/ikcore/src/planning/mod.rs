@@ -30,9 +30,9 @@ mod with_breaks;
 pub use crate::along_path::TipPath;
 pub use crate::moves::{JointGoal, Move, MoveKind, MovesOptions, plan_moves};
 pub use crate::plan::{
-    AlongPathMethod, AlongPathOptions, Break, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned, LineContact,
-    LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget, PointToPointMethod,
-    PointToPointOptions, SpeedBound, StraightLine, Tpbso,
+    AlongPathMethod, AlongPathOptions, Break, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned,
+    LineContact, LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget,
+    PointToPointMethod, PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{
     ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,

@@ -1,16 +1,17 @@
 //! Planning along a path that the tool leaves where it must: it draws back, goes another way, comes near again and goes on.
 
+use crate::along_path::TipPath;
 use crate::along_path::clear_path::{Stretch, Stretches, along_stretch, stretches};
 use crate::along_path::timed::{PathKeeps, PathProblem};
-use crate::along_path::TipPath;
 use crate::approach_retreat::composed;
 use crate::error::{Error, Result};
 use crate::math::vector::largest_difference;
 use crate::obstacle::{ClearSpace, Clearance};
-use crate::plan::{AlongPathOptions, Break, Cost, EndTurns, Endpoint, LineFrame, Plan, PointToPointOptions, StraightLine};
+use crate::plan::{
+    AlongPathOptions, Break, Cost, EndTurns, Endpoint, LineFrame, Plan, PointToPointOptions, StraightLine,
+};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stop, Stopwatch};
-use crate::trajectory::Trajectory;
 
 /// Lengths (m) of the straight lines along the axis of the tool by which it leaves the path and comes back, longest first.
 const LINES: [Option<f64>; 4] = [Some(0.05), Some(0.02), Some(0.005), None];
@@ -37,7 +38,11 @@ pub(super) struct BrokenPath<'a> {
 enum Piece {
     Along(Box<Plan>),
     /// Beside the path, from one path parameter to another; no way where the path begins later or ends sooner.
-    Beside { way: Option<Box<Plan>>, places: [f64; 2], reason: String },
+    Beside {
+        way: Option<Box<Plan>>,
+        places: [f64; 2],
+        reason: String,
+    },
 }
 
 impl BrokenPath<'_> {
@@ -136,10 +141,11 @@ impl BrokenPath<'_> {
                 limits: self.options.limits.clone(),
                 end_turns: EndTurns::AsGiven,
                 objective: self.options.objective,
-                stop: self.options.stop.and_then(|stop| stop.max_time).map(|time| Stop {
-                    max_time: Some(time),
-                    ..Stop::default()
-                }),
+                stop: self
+                    .options
+                    .stop
+                    .and_then(|stop| stop.max_time)
+                    .map(|time| Stop { max_time: Some(time), ..Stop::default() }),
                 seed: self.options.seed,
                 ..PointToPointOptions::default()
             };
@@ -164,12 +170,12 @@ impl BrokenPath<'_> {
 
     /// The plan of all pieces.
     fn joined(&self, pieces: Vec<Piece>) -> Result<Option<Plan>> {
-        let (mut motion, mut breaks): (Option<Trajectory>, Vec<Break>) = (None, vec![]);
+        let (mut whole, mut breaks): (Option<Plan>, Vec<Break>) = (None, vec![]);
         let (mut violations, mut evaluations, mut status) = (vec![], 0, Status::Solved);
         let (mut accuracy, mut surroundings, mut obstruction) = (0.0_f64, None, None);
         let mut least: Option<Clearance> = None;
         for piece in pieces {
-            let start = motion.as_ref().map_or(0.0, Trajectory::duration);
+            let start = whole.as_ref().map_or(0.0, |before| before.trajectory.duration());
             let (plan, place) = match piece {
                 Piece::Along(plan) => (Some(plan), None),
                 Piece::Beside { way, places, reason } => (way, Some((places, reason))),
@@ -179,26 +185,26 @@ impl BrokenPath<'_> {
                 let [at, until] = self.named(places);
                 breaks.push(Break { at, until, reason, start, end: start + moved });
             }
-            let Some(plan) = plan else { continue };
-            motion = Some(match &motion {
-                None => plan.trajectory,
-                Some(before) => before.then(&plan.trajectory, 0.0)?,
-            });
+            let Some(mut plan) = plan else { continue };
+            if let Some(before) = &whole {
+                plan.trajectory = before.trajectory.then(&plan.trajectory, 0.0)?;
+            }
             accuracy = accuracy.max(plan.accuracy.unwrap_or(0.0));
-            surroundings = surroundings.or(plan.surroundings);
-            obstruction = obstruction.or(plan.obstruction);
+            surroundings = surroundings.or_else(|| plan.surroundings.clone());
+            obstruction = obstruction.or_else(|| plan.obstruction.clone());
             if let Some(Clearance { distance, .. }) = plan.clearance {
                 least = Some(Clearance::at_least(least.map_or(distance, |least| least.distance.min(distance))));
             }
             if status == Status::Solved {
                 status = plan.status;
             }
-            violations.extend(plan.violations);
+            violations.append(&mut plan.violations);
             evaluations += plan.evaluations;
+            whole = Some(*plan);
         }
-        let Some(motion) = motion else { return Ok(None) };
+        let Some(Plan { trajectory, .. }) = whole else { return Ok(None) };
         let objective: Cost = self.options.objective;
-        let cost = objective.of(self.robot, &motion);
+        let cost = objective.of(self.robot, &trajectory);
         Ok(Some(Plan {
             breaks,
             violations,
@@ -209,7 +215,7 @@ impl BrokenPath<'_> {
             clearance: least,
             accuracy: Some(accuracy),
             reference: Some(self.tip_path.positions().to_vec()),
-            ..Plan::of(motion, objective, cost)
+            ..Plan::of(trajectory, objective, cost)
         }))
     }
 }

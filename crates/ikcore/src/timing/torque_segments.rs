@@ -10,7 +10,9 @@ use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use crate::constraint::{BendScratch, JointTorques, Rest, TIGHT, TooHeavy, TorquePoint, TorqueTerms, control_points};
+use crate::constraint::{
+    BendScratch, Drag, JointTorques, Rest, TIGHT, TooHeavy, TorquePoint, TorqueTerms, control_points,
+};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::majorant::Majorant;
@@ -37,6 +39,8 @@ struct Part {
     terms: [TorqueTerms; 3],
     /// By joint.
     rests: Vec<Rest>,
+    /// Friction against positive and against negative torques, by joint.
+    drags: Vec<[Drag; 2]>,
 }
 
 /// Bounds on u over a segment where x grows by 2 u from its start on.
@@ -127,11 +131,14 @@ impl Part {
         // x(s) = x + 2 u s, and s times a parabola is a cubic.
         let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [self.from, to]));
         let rest_a = rest_a + 2.0 * to * rest_b;
+        let drags = self.drags[joint];
+        // Friction counts (ds/dt)^2 = x + 2 u s as x and as u.
         (0..4).flat_map(move |i| {
             let (a, b, g) = (a[i] + 2.0 * slope[i], b[i], g[i]);
-            [1.0, -1.0].into_iter().flat_map(move |side| {
-                let c = limit - side * g - rest_g;
-                [rest_a, -rest_a].map(|rest| [side * a + rest, side * b + rest_b, c])
+            [1.0, -1.0].into_iter().zip(drags).flat_map(move |(side, drag)| {
+                let c = limit - side * g - rest_g - drag.at_rest;
+                let rest_a = rest_a + 2.0 * to * drag.per_square;
+                [rest_a, -rest_a].map(|rest| [side * a + rest, side * b + rest_b + drag.per_square, c])
             })
         })
     }
@@ -169,12 +176,13 @@ impl Builder<'_> {
             let hold = control_points([&start, &middle, &end].map(|terms| terms.hold[joint]));
             let largest = hold.into_iter().fold(0.0_f64, |largest, hold| largest.max(hold.abs()));
             let [of_change, of_square, of_hold] = rests[joint];
-            holds &= largest + of_hold < limit * (1.0 - 2.0 * TIGHT);
+            holds &= largest + of_hold + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
             let rest = of_change * fastest[0] + of_square * fastest[1] + of_hold;
             is_tight &= !(rest > NEGLIGIBLE * limit);
         }
         if holds && (is_tight || halvings >= DEEP) {
-            parts.push(Part { from, length: to - from, terms: [start, middle, end], rests });
+            let drags = self.drags(segment, [from, to], fastest[1], [&start, &middle, &end]);
+            parts.push(Part { from, length: to - from, terms: [start, middle, end], rests, drags });
             return Ok(());
         }
         if halvings == DEEPEST {
@@ -217,10 +225,26 @@ impl Builder<'_> {
         rests.iter().map(|[a, b, g]| [a / half, b / (half * half), *g]).collect()
     }
 
+    /// Friction over a part of a segment on which (ds/dt)^2 is at most `square`.
+    fn drags(&self, segment: &Segment, [from, to]: [f64; 2], square: f64, terms: [&TorqueTerms; 3]) -> Vec<[Drag; 2]> {
+        let half = 0.5 * (to - from);
+        let of_joint = |(joint, limit): (usize, &f64)| {
+            let [_, first, second] = self.path.joint_at(segment.piece, segment.from + from + half, joint);
+            let third = 6.0 * self.path.powers(segment.piece)[3][joint];
+            let most = (half * second).abs() + (0.5 * half * half * third).abs();
+            let hold = control_points(terms.map(|terms| terms.hold[joint]));
+            let largest = hold.into_iter().fold(0.0_f64, |largest, hold| largest.max(hold.abs()));
+            let friction = self.torques.friction(joint);
+            [first + most, most - first].map(|rate| friction.drag(rate, limit - largest, square))
+        };
+        self.torques.limits().iter().enumerate().map(of_joint).collect()
+    }
+
     fn too_heavy(&self, segment: &Segment, at: f64, found: Option<TooHeavy>) -> Error {
         let s = number(self.path.breaks()[segment.piece] + segment.from + at);
         let Some(TooHeavy { joint, torque, limit }) = found else {
-            let problem = format!("at s = {s} of the path a joint can hardly hold the arm");
+            let problem =
+                format!("at s = {s} of the path a joint can hardly hold the arm, or not move it against its friction");
             return Error::Infeasible { problem: problem.into() };
         };
         let [torque, limit] = [torque.abs(), limit].map(number);

@@ -25,8 +25,8 @@ use crate::traversal::traversed;
 ///         origin (m/s), its acceleration (m/s^2), and how fast the tip turns (rad/s). A number for all tips, or a dict by tip; None: no
 ///         limit. Planned motions keep them at every instant, not only at samples.
 ///     torque: limits of the torques of the joints (N m, N), a number or (n,); `robot.torque_limit` has those of the robot's file. None: not
-///         limited. Planned motions keep them at every instant, with the masses, the payload and the gravity of the robot
-///         and without the friction of its joints.
+///         limited. Planned motions keep them at every instant, with the masses, payload, gravity and friction of the robot; they do not
+///         count on friction where it would help.
 ///
 /// Limits of joints are a number for all joints, (n,), a `Sinusoid`, or a callable of t (s) that returns a number or (n,). Callables
 /// are sampled at the ends and in the middle of each tick. A method that cannot keep a limit raises `UnsupportedLimit`;

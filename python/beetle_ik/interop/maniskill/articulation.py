@@ -3,7 +3,7 @@
 import os
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,6 +91,11 @@ class Articulation:
             self._made = key, robot
         return self._made[1]
 
+    @property
+    def has_bodies(self) -> bool:
+        """Whether anything of the robot, or that it carries, can touch something."""
+        return bool(self._arm.bodies or self.attached)
+
     def link(self, number: int) -> str:
         """Returns the name of a link; -1 is the one that moves."""
         return self._arm.tips[0] if number == -1 else self.link_names[number]
@@ -117,6 +122,10 @@ class Articulation:
     def set_base_pose(self, pose: Any) -> None:
         """Places the base in the world."""
         self._base = matrix_of("pose", pose)
+
+    def get_pinocchio_model(self) -> NoReturn:
+        """Says what stands in for the model of Pinocchio, which is not here."""
+        raise AttributeError("there is no Pinocchio model: use arm_at(qpos), whose fk and jacobian take the move group")
 
     def get_user_joint_names(self) -> list[str]:
         """Returns the names of all joints, in order."""

@@ -20,6 +20,7 @@ from ..._core import (
     plan_point_to_point,
     time_optimal,
 )
+from ...calls.text import counted
 from ...installed.needs import library
 from . import fcl
 from .articulation import Articulation
@@ -278,7 +279,7 @@ class Planner:
         if isinstance(rows, str):
             return {"status": f"screw plan failed: {rows}"}
         obstacles = self._around(use_point_cloud)
-        if robot.bodies:
+        if obstacles is not None:
             clear = clearance(robot, rows, obstacles)
             if np.any(clear < 0.0):
                 found = nearest(robot, rows[np.argmax(clear < 0.0)], obstacles)
@@ -412,7 +413,7 @@ class Planner:
         qpos: Array,
         end: dict[str, Any],
         time_step: float,
-        obstacles: list[Obstacle],
+        obstacles: list[Obstacle] | None,
         attached: bool,
         keep: Any,
         fixed: Sequence[int] = (),
@@ -427,9 +428,9 @@ class Planner:
                 robot,
                 start_q=q,
                 limits=self._limits(q, fixed),
-                obstacles=obstacles if robot.bodies else None,
+                obstacles=obstacles,
                 margin=0.0,
-                free_start=bool(robot.bodies),
+                free_start=obstacles is not None,
                 keep=keep,
                 **end,
             )
@@ -448,7 +449,7 @@ class Planner:
         mask: ArrayLike | None,
         count: int,
         threshold: float,
-        obstacles: list[Obstacle],
+        obstacles: list[Obstacle] | None,
     ) -> tuple[str, list[Array] | None]:
         """Returns configurations of all joints for a pose in the world, nearest first."""
         robot, q = self.robot.arm_at(qpos), qpos[self.robot.joints.at]
@@ -460,7 +461,7 @@ class Planner:
             held,
             count=count,
             tolerance=threshold / 2.0,
-            obstacles=obstacles if robot.bodies else None,
+            obstacles=obstacles,
         )
         if not found:
             return f"IK Failed! {self.planning_world.named(message)}", None
@@ -501,8 +502,21 @@ class Planner:
         matrix = matrix_of("goal_pose", pose)
         return matrix if wrt_world else self.robot.get_base_pose().to_transformation_matrix() @ matrix
 
-    def _around(self, used: bool) -> list[Obstacle]:
-        return self.planning_world.obstacles if used else []
+    def _around(self, used: bool) -> list[Obstacle] | None:
+        """Returns the obstacles; None for a robot without bodies, which can touch nothing.
+
+        Raises:
+            InvalidInputError: obstacles, and a robot without bodies.
+        """
+        obstacles = self.planning_world.obstacles if used else []
+        if self.robot.has_bodies:
+            return obstacles
+        if obstacles:
+            raise InvalidInputError(
+                f"the robot '{self.robot.get_name()}' has no collision shapes, so it cannot keep clear of "
+                f'{counted(len(obstacles), "obstacle")}: give a URDF with shapes and collision="hulls"'
+            )
+        return None
 
     def _arm(self, goals: Any) -> Array:
         return np.array(goals)[:, self.robot.joints.at]

@@ -116,7 +116,7 @@ class Node:
         """Keeps a target, and starts the servo where the arm is if it rests."""
         if time.monotonic() < self.busy_until:
             raise InvalidInputError("a planned motion is under way: send targets when it has ended")
-        if servo.tracker is None:
+        if servo.jog is None:
             servo.start(self.states.require())
         keep(message)
 
@@ -124,7 +124,7 @@ class Node:
         """Plans from rest where the arm is, and sends the motion."""
         if time.monotonic() < self.busy_until:
             raise InvalidInputError("a planned motion is under way: send the goal when it has ended")
-        if self.servo is not None and self.servo.tracker is not None:
+        if self.servo is not None and self.servo.jog is not None:
             raise InvalidInputError("the arm follows targets: send the goal when it rests")
         plan = self.planner.plan(self.states.require(), message)
         if not plan.success:
@@ -158,7 +158,7 @@ class Node:
             return
         self.command([step])
         if self.servo is not None and self.servo.rests:
-            self.servo.tracker = None  # the next target starts where the arm is then
+            self.servo.jog = None  # the next target starts where the arm is then
             self.log("info", "rests")
 
     def command(self, steps: list[Step]) -> None:
@@ -171,7 +171,7 @@ class Node:
 
     def end(self) -> None:
         """Sends the whole stop of an arm that follows a target, in one message."""
-        if self.servo is not None and self.servo.tracker is not None:
+        if self.servo is not None and self.servo.jog is not None:
             self.command(self.servo.stopping())
             self.commands.wait_for_acks(duration(milliseconds=50))
 

@@ -5,12 +5,13 @@ use ikcore::robot::Motions;
 
 use super::*;
 
+fn motions<'a>(q: &'a [f64], qd: Option<&'a [f64]>) -> Motions<'a> {
+    Motions { q, qd, qdd: None, wrenches: None }
+}
+
 pub fn masses_and_torques() -> Vec<Row> {
     let (panda, bare) = (robot("panda"), robot("ur5e"));
     let point = |mass: f64| Inertia::point(mass, [0.0; 3]);
-    fn motions<'a>(q: &'a [f64], qd: Option<&'a [f64]>) -> Motions<'a> {
-        Motions { q, qd, qdd: None, wrenches: None }
-    }
     let on_axis = Robot::planar(&[0.5, 0.4]).unwrap();
     let on_axis = on_axis.with_inertias([("link_2", Inertia::point(1.0, [-0.4, 0.0, 0.0]))]).unwrap();
     promises! {

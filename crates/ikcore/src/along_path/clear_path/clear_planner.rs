@@ -292,9 +292,10 @@ impl<'p> ClearPlanner<'p> {
                 format!("all {count} configurations tried there are on other branches than those before")
             }
         };
-        let cause = last.map_or_else(String::new, |q| {
+        let cause = last.map_or_else(String::new, |(q, swept)| {
             let from = (self.fractions[layer - 1], &q[..]);
-            let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[layer]);
+            let turns = self.problem.options.start.is_none().then_some(swept);
+            let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[layer], turns);
             format!("; on the way there, {why}")
         });
         let problem = message![format!("{problem}{cause}; {ADVICE}, or "), Setting::Breaks];

@@ -93,7 +93,7 @@ impl<'a> Passage<'a> {
     }
 
     /// Whole turns of a joint (rad) that bring what it sweeps inside its limits; `None` if there are none.
-    fn shift(&self, j: usize, low: f64, high: f64) -> Option<f64> {
+    pub fn shift(&self, j: usize, low: f64, high: f64) -> Option<f64> {
         let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
         if lower <= low && high <= upper {
             return Some(0.0);

@@ -1,6 +1,7 @@
 //! Why the arm cannot follow a path beyond a place.
 
 use super::passage::{Passage, Waypoint};
+use super::sequence::{Swept, swept_on_to};
 use crate::along_path::missed_points::missed_at;
 use crate::along_path::timed::PathProblem;
 use crate::error::Error;
@@ -17,12 +18,14 @@ const JUMP: f64 = 1.0;
 
 /// The cause, in words, why the arm does not get from a posture `from` to the path parameter `to` along the path.
 ///
-/// Follows the path without regard to limits and obstacles, to the first thing that is in the way.
+/// Follows the path without regard to limits and obstacles, to the first thing that is in the way. With what the joints have `swept` until
+/// there, whole turns may still be chosen.
 pub(super) fn why_it_ends(
     passage: &mut Passage<'_>,
     space: Option<&ClearSpace<'_>>,
     from: Waypoint<'_>,
     to: f64,
+    mut swept: Option<Swept>,
 ) -> String {
     let mut here = from.1.to_vec();
     for part in PARTS {
@@ -39,7 +42,8 @@ pub(super) fn why_it_ends(
             let name = passage.problem.limits.joint_name(joint.unwrap_or(0));
             return format!("a singularity: joint '{name}' would have to jump by {}", number(jump));
         }
-        if let Some(limit) = beyond_limit(passage.problem, &next) {
+        swept = swept.map(|swept| swept_on_to(&swept, &next));
+        if let Some(limit) = beyond_limit(passage, &next, swept.as_ref()) {
             return limit;
         }
         if let Some(broken) = passage.problem.keeps.broken_at(&next) {
@@ -54,18 +58,19 @@ pub(super) fn why_it_ends(
     "no motion that was found leads on from there".into()
 }
 
-/// Words for the joint that is farthest beyond its limits.
-fn beyond_limit(problem: &PathProblem<'_>, q: &[f64]) -> Option<String> {
-    let limits = &problem.limits;
+/// Words for the joint that is farthest beyond its limits, of those that whole turns do not bring inside.
+fn beyond_limit(passage: &Passage<'_>, q: &[f64], swept: Option<&Swept>) -> Option<String> {
+    let PathProblem { robot, limits, .. } = passage.problem;
     let excess = |j: usize| (limits.lower[j] - q[j]).max(q[j] - limits.upper[j]);
-    let joint = (0..q.len()).max_by(|a, b| excess(*a).total_cmp(&excess(*b)))?;
+    let is_fixed = |j: &usize| swept.is_none_or(|[low, high]| passage.shift(*j, low[*j], high[*j]).is_none());
+    let joint = (0..q.len()).filter(is_fixed).max_by(|a, b| excess(*a).total_cmp(&excess(*b)))?;
     let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
     if excess(joint) <= limit_rounding(lower, upper) {
         return None;
     }
     let name = limits.joint_name(joint);
     let beyond = format!("beyond its limits [{}, {}]", number(lower), number(upper));
-    let turns = problem.robot.turn_period(joint).is_some_and(|period| upper - lower >= period);
+    let turns = robot.turn_period(joint).is_some_and(|period| upper - lower >= period);
     let (verb, end) = if turns { ("turn", ", and has no whole turns left") } else { ("go", "") };
     Some(format!("joint '{name}' would have to {verb} to {}, {beyond}{end}", number(q[joint])))
 }

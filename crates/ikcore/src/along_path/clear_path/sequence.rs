@@ -27,8 +27,11 @@ pub(super) struct Reached {
     /// Index of its predecessor in the layer before.
     before: usize,
     /// Smallest and largest value of each joint on the sequence.
-    swept: [Point; 2],
+    swept: Swept,
 }
+
+/// Smallest and largest value of each joint on a motion.
+pub(super) type Swept = [Point; 2];
 
 impl Reached {
     /// The first posture of a sequence.
@@ -38,18 +41,22 @@ impl Reached {
     }
 
     /// The values that each joint takes on the sequence to here, and on to `q`.
-    fn swept_on_to(&self, q: &[f64]) -> [Point; 2] {
-        let [low, high] = &self.swept;
-        [low.iter().zip(q).map(|(a, b)| a.min(*b)).collect(), high.iter().zip(q).map(|(a, b)| a.max(*b)).collect()]
+    fn swept_on_to(&self, q: &[f64]) -> Swept {
+        swept_on_to(&self.swept, q)
     }
+}
+
+/// What the joints sweep on a motion that goes on to `q`.
+pub(super) fn swept_on_to([low, high]: &Swept, q: &[f64]) -> Swept {
+    [low.iter().zip(q).map(|(a, b)| a.min(*b)).collect(), high.iter().zip(q).map(|(a, b)| a.max(*b)).collect()]
 }
 
 /// The layer that no sequence reaches.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Unreached {
     pub layer: usize,
-    /// The posture of the layer before that the cheapest sequence ends at.
-    pub last: Option<Point>,
+    /// The posture of the layer before that the cheapest sequence ends at, and what its joints sweep.
+    pub last: Option<(Point, Swept)>,
 }
 
 /// A sequence, or the layer at which it breaks off.
@@ -88,7 +95,10 @@ pub(super) fn cheapest(
 fn unreached(layers: &[Vec<LayerPosture>], reached: &[Vec<Reached>]) -> Option<Unreached> {
     let layer = reached.len();
     (layer < layers.len()).then(|| {
-        let last = ends_by_cost(reached).next().map(|end| reached[layer - 1][end].q.clone());
+        let last = ends_by_cost(reached).next().map(|end| {
+            let Reached { q, swept, .. } = &reached[layer - 1][end];
+            (q.clone(), swept.clone())
+        });
         Unreached { layer, last }
     })
 }

@@ -8,7 +8,7 @@ use super::passage::Passage;
 use super::path_end::why_it_ends;
 use super::postures::{DENSITIES, LayerSampling, clear_layers, intervals, postures};
 use super::price::Price;
-use super::sequence::{LayerPosture, ends_by_cost, reached, traced};
+use super::sequence::{LayerPosture, Swept, ends_by_cost, reached, swept_on_to, traced};
 use crate::along_path::timed::PathProblem;
 use crate::along_path::tip_path::TipPath;
 use crate::error::Result;
@@ -143,7 +143,8 @@ impl<'a> Divider<'a> {
                 continue;
             }
             let end = from + sequence.len() - 1;
-            let reason = (end < last).then(|| self.reason(end, &sequence[end - from], end + 1));
+            let swept = if from == 0 && self.passage.problem.options.start.is_some() { None } else { swept(&sequence) };
+            let reason = (end < last).then(|| self.reason(end, &sequence[end - from], end + 1, swept));
             self.parts.push(Part { first: from, sequence, reason });
             from = end + 1;
         }
@@ -176,9 +177,9 @@ impl<'a> Divider<'a> {
     }
 
     /// Why the arm does not get from a posture of one layer to another layer.
-    fn reason(&mut self, layer: usize, q: &Point, to: usize) -> String {
+    fn reason(&mut self, layer: usize, q: &Point, to: usize, swept: Option<Swept>) -> String {
         let from = (self.fractions[layer], &q[..]);
-        let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[to]);
+        let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[to], swept);
         let place = self.passage.problem.tip_path.point_in_words(self.fractions[to]);
         format!("towards {place}, {why}")
     }
@@ -233,7 +234,8 @@ impl<'a> Divider<'a> {
         let (mut stretches, mut reasons) = (vec![], vec![]);
         let parts = std::mem::take(&mut self.parts);
         let first = parts.first().filter(|part| part.first > 0);
-        reasons.push(first.map(|part| self.reason(part.first, &part.sequence[0], part.first - 1)));
+        reasons
+            .push(first.map(|part| self.reason(part.first, &part.sequence[0], part.first - 1, swept(&part.sequence))));
         for (i, part) in parts.iter().enumerate() {
             let next = parts.get(i + 1).map_or(last, |next| next.first);
             let before = if part.first > 0 { reached } else { 0.0 };
@@ -314,6 +316,12 @@ impl<'a> Divider<'a> {
             sequence,
         }
     }
+}
+
+/// What the joints sweep.
+fn swept(sequence: &[Point]) -> Option<Swept> {
+    let first = sequence.first()?;
+    Some(sequence.iter().fold([first.clone(), first.clone()], |swept, q| swept_on_to(&swept, q)))
 }
 
 /// Path parameters on the part of the path that they cover.

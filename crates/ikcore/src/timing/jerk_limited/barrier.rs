@@ -137,9 +137,7 @@ impl<'a> Search<'a> {
                 }
                 logarithms.add(room);
             }
-            for row in torques {
-                let used = row.used(&y);
-                let room = 1.0 - used * used;
+            for (room, _) in torques.iter().flat_map(|row| row.rooms(&y)) {
                 if !(room > 0.0) {
                     return None;
                 }
@@ -226,19 +224,16 @@ impl Local {
             let [a, b] = row.used(y);
             let [a0, a1] = row.acceleration;
             let [b0, b1, b2] = row.jerk;
-            local.add_between(barrier, a, [a0, a1, 0.0]);
+            let [above, below] = [1.0 / (1.0 - a), 1.0 / (1.0 + a)];
+            local.add_pair(barrier, [above - below, above * above + below * below], [a0, a1, 0.0]);
             local.add(barrier, 1.0 / (slow - b), [slower - b0, -b1, -b2]);
             local.add(barrier, 1.0 / (slow + b), [slower + b0, b1, b2]);
         }
         tips.iter().for_each(|tip| local.add_tip(barrier, tip, y));
-        torques.iter().for_each(|row| local.add_between(barrier, row.used(y), [row.of_y, row.of_slope, 0.0]));
+        for (room, slope) in torques.iter().flat_map(|row| row.rooms(y)) {
+            local.add(barrier, 1.0 / room, slope);
+        }
         local
-    }
-
-    /// Adds - `barrier` log(1 - used^2) for a part of a limit with this derivative.
-    fn add_between(&mut self, barrier: f64, used: f64, slope: [f64; 3]) {
-        let [above, below] = [1.0 / (1.0 - used), 1.0 / (1.0 + used)];
-        self.add_pair(barrier, [above - below, above * above + below * below], slope);
     }
 
     /// Adds - `barrier` log(room) for a room with this inverse and derivative.

@@ -6,7 +6,7 @@
 use super::super::constant_limits::ConstantLimits;
 use super::clock::{Clock, PathPoint};
 use super::rate_spline::{RateSpline, Weights};
-use crate::constraint::{JointSpan, JointTorques, TipRates, TorquePoint, TorqueTerms, VectorJet};
+use crate::constraint::{Drag, JointSpan, JointTorques, TipRates, TorquePoint, TorqueTerms, VectorJet};
 use crate::limits::TipField;
 use crate::math::vector3::{Vector, norm};
 
@@ -64,12 +64,14 @@ pub(super) struct TipRow {
     pub of_slope: Vector,
 }
 
-/// The torque limit of a joint at one point: |hold + a y + b y'| <= 1.
+/// The torque limit of a joint at one point: |hold + a y + b y'| + friction <= 1, with the friction on the side that it acts on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueRow {
     pub hold: f64,
     pub of_y: f64,
     pub of_slope: f64,
+    /// Against positive and against negative torques.
+    pub drags: [Drag; 2],
 }
 
 impl Constraints {
@@ -88,9 +90,6 @@ impl Constraints {
                 if let Some(tips) = &mut tips {
                     slowness = slowness.max(tips.push(&at, &mut tip_rows));
                 }
-                if let Some(torques) = &mut torques {
-                    torques.push(&at, &mut torque_rows);
-                }
                 for joint in 0..limits.dof() {
                     let [_, first, second, third] = at.joint(joint);
                     let [v, a, b] = inverses(limits, joint, *time);
@@ -99,6 +98,9 @@ impl Constraints {
                         acceleration: [second * a, 0.5 * first * a],
                         jerk: [third * b, 1.5 * second * b, 0.5 * first * b],
                     });
+                }
+                if let Some(torques) = &mut torques {
+                    torques.push(&at, 1.0 / slowness, &mut torque_rows);
                 }
                 let weights = rate.weights(interval, place);
                 points.push(RatePoint { interval, weights, share: weight * rate.length(interval), slowness });
@@ -148,7 +150,7 @@ impl Constraints {
         let of_row = |row: &JointRow| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
         let of_point = |PointRows { point, joints, tips, torques }: PointRows<'_>| {
             let of_tips = tips.iter().map(|tip| norm(&tip.of_y)).fold(point.slowness, f64::max);
-            let of_torques = torques.iter().map(|row| row.of_y.abs() / (1.0 - row.hold.abs())).fold(of_tips, f64::max);
+            let of_torques = torques.iter().map(TorqueRow::slowness).fold(of_tips, f64::max);
             joints.iter().map(of_row).fold(of_torques, f64::max)
         };
         let y = 1.0 / self.all().map(of_point).fold(0.0, f64::max);
@@ -172,6 +174,7 @@ impl Constraints {
         }
         for row in &mut self.torque_rows {
             (row.of_y, row.of_slope) = (row.of_y * y, row.of_slope * y);
+            row.drags.iter_mut().for_each(|drag| drag.per_square *= y);
         }
     }
 }
@@ -221,25 +224,47 @@ impl<'a> TorquesAt<'a> {
         Self { torques, at: torques.point(), terms: torques.terms() }
     }
 
-    fn push(&mut self, point: &PathPoint<'_>, rows: &mut Vec<TorqueRow>) {
+    /// Adds the rows of a point where y is at most `most`.
+    fn push(&mut self, point: &PathPoint<'_>, most: f64, rows: &mut Vec<TorqueRow>) {
         let Self { torques, at, terms } = self;
         for joint in 0..torques.dof() {
             [at.q[joint], at.first[joint], at.second[joint], _] = point.joint(joint);
         }
         torques.write_terms(at, terms);
-        rows.extend(torques.limits().iter().enumerate().map(|(joint, limit)| TorqueRow {
-            hold: terms.hold[joint] / limit,
-            of_y: terms.of_square[joint] / limit,
-            of_slope: 0.5 * terms.of_change[joint] / limit,
+        rows.extend(torques.limits().iter().enumerate().map(|(joint, limit)| {
+            let (hold, rate) = (terms.hold[joint], at.first[joint]);
+            let drag = |rate: f64| {
+                let Drag { at_rest, per_square } = torques.friction(joint).drag(rate, limit - hold.abs(), most);
+                Drag { at_rest: at_rest / limit, per_square: per_square / limit }
+            };
+            TorqueRow {
+                hold: hold / limit,
+                of_y: terms.of_square[joint] / limit,
+                of_slope: 0.5 * terms.of_change[joint] / limit,
+                drags: [rate, -rate].map(drag),
+            }
         }));
     }
 }
 
 impl TorqueRow {
-    /// The torque as a part of its limit.
+    /// What is left above and below, as parts of the limit, and the derivatives by y and y'.
     #[inline]
-    pub(super) fn used(&self, [y, slope, _]: &[f64; 3]) -> f64 {
-        self.hold + self.of_y * y + self.of_slope * slope
+    pub(super) fn rooms(&self, [y, slope, _]: &[f64; 3]) -> [(f64, [f64; 3]); 2] {
+        let torque = self.hold + self.of_y * y + self.of_slope * slope;
+        let [above, below] = self.drags;
+        let room = |sign: f64, drag: Drag| {
+            let left = 1.0 - sign * torque - drag.at_rest - drag.per_square * y;
+            (left, [-sign * self.of_y - drag.per_square, -sign * self.of_slope, 0.0])
+        };
+        [room(1.0, above), room(-1.0, below)]
+    }
+
+    /// 1 / y where a steady rate reaches the limit.
+    fn slowness(&self) -> f64 {
+        let of_side =
+            |(sign, drag): (f64, &Drag)| (sign * self.of_y + drag.per_square) / (1.0 - sign * self.hold - drag.at_rest);
+        [1.0, -1.0].into_iter().zip(&self.drags).map(of_side).fold(0.0, f64::max)
     }
 }
 
