@@ -2,12 +2,12 @@
 //!
 //! Along a path q(s) the torque of a joint is a(s) d2s/dt2 + b(s) (ds/dt)^2 + g(s). Over an interval each factor is within a rest
 //! ([`TorqueBend`]) of the parabola through its values at both ends and in the middle, and a parabola is within its Bernstein coefficients.
-//! Friction is added where it acts against the motion; where it would help, it is not counted on.
+//! Friction is added: viscous friction against the motion, dry friction in both directions, since a joint at rest may start either way.
 
 use std::sync::Arc;
 
 use super::joint_span::JointSpan;
-use super::largest_factor::{IntervalFactor, TIGHT, largest_factor};
+use super::largest_factor::{IntervalFactor, TIGHT, is_at_most, largest_factor};
 use super::torque_bend::{BendScratch, Rest, TorqueBend};
 use crate::dynamics::{DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result};
@@ -35,7 +35,7 @@ pub(crate) struct Friction {
 }
 
 /// Friction along a path, against a torque of one sign: at most `at_rest` + `per_square` (ds/dt)^2.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drag {
     pub at_rest: f64,
     pub per_square: f64,
@@ -45,10 +45,7 @@ impl Friction {
     /// Bounds the friction of a joint that moves at up to `rate` per ds/dt against torques that leave `room`, where (ds/dt)^2 is at most
     /// `square`: its root is below any of its tangents.
     pub fn drag(&self, rate: f64, room: f64, square: f64) -> Drag {
-        if !(rate > 0.0) {
-            return Drag::default();
-        }
-        let viscous = self.damping * rate;
+        let viscous = self.damping * rate.max(0.0);
         if viscous == 0.0 {
             return Drag { at_rest: self.dry, per_square: 0.0 };
         }
@@ -230,18 +227,23 @@ impl JointTorques {
     }
 
     /// Factor by which `motion` must be slowed down to keep the limits, or a bound of it up to `enough`; infinite if a joint cannot hold the arm
-    /// somewhere. A larger one is at most [`TIGHT`] too large.
+    /// somewhere.
     pub fn slowdown(&self, motion: &Trajectory, enough: f64) -> f64 {
         largest_factor(motion, enough, &mut TorqueFactor::new(self, Judged::Slowdown))
+    }
+
+    /// Whether `motion` keeps the limits.
+    pub fn keeps(&self, motion: &Trajectory) -> bool {
+        is_at_most(motion, 1.0 + ROUNDING, &mut TorqueFactor::new(self, Judged::Share(None)))
     }
 
     /// Torques of `motion` beyond their limits.
     pub fn excesses(&self, motion: &Trajectory) -> Vec<TorqueExcess> {
         let enough = 1.0 + ROUNDING;
-        let share = |judged| largest_factor(motion, enough, &mut TorqueFactor::new(self, judged));
-        if share(Judged::Share(None)) <= enough {
+        if self.keeps(motion) {
             return vec![];
         }
+        let share = |judged| largest_factor(motion, enough, &mut TorqueFactor::new(self, judged));
         let limited = (0..self.dof()).filter(|joint| self.limits[*joint].is_finite());
         let excess = |joint: usize| {
             let share = share(Judged::Share(Some(joint)));
@@ -262,8 +264,7 @@ impl JointTorques {
         let share = |(joint, limit): (usize, &f64)| {
             let (torque, rate) = (terms.hold[joint] + terms.of_square[joint], point.first[joint]);
             let Friction { dry, damping } = self.friction(joint);
-            let friction = if rate == 0.0 { 0.0 } else { dry.copysign(rate) + damping * rate };
-            torque.abs().max((torque + friction).abs()) / limit
+            (torque.abs().max((torque + damping * rate).abs()) + dry) / limit
         };
         self.limits.iter().enumerate().map(share).collect()
     }
@@ -305,6 +306,8 @@ impl<'a> TorqueFactor<'a> {
 }
 
 impl IntervalFactor for TorqueFactor<'_> {
+    const ACCURACY: f64 = 1e-3;
+
     fn over(&mut self, polynomials: &[Coefficients], [middle, half]: [f64; 2]) -> [f64; 2] {
         let Self { torques, judged, span, point, nodes, rests, bend } = self;
         span.set(&torques.robot, polynomials.iter().copied(), [middle, half]);
@@ -327,9 +330,8 @@ impl IntervalFactor for TorqueFactor<'_> {
             let friction = torques.friction(joint);
             let factor = |of_motion: f64, hold: f64, rest: [f64; 2], [slowest, fastest]: [f64; 2]| {
                 let of_side = |sign: f64, rate: f64| {
-                    let dry = if rate > 0.0 { friction.dry } else { 0.0 };
                     let viscous = friction.damping * rate.max(0.0);
-                    let [inertial, left] = [sign * of_motion + rest[0], limit - sign * hold - rest[1] - dry];
+                    let [inertial, left] = [sign * of_motion + rest[0], limit - sign * hold - rest[1] - friction.dry];
                     match judged {
                         Judged::Slowdown => slowdown(inertial, viscous, left),
                         Judged::Share(_) => (inertial + viscous + limit - left) / limit,

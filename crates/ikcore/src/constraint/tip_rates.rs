@@ -182,6 +182,8 @@ struct TipFactor<'a> {
 }
 
 impl IntervalFactor for TipFactor<'_> {
+    const ACCURACY: f64 = TIGHT;
+
     fn over(&mut self, polynomials: &[Coefficients], [middle, half]: [f64; 2]) -> [f64; 2] {
         self.at.set(self.robot, polynomials.iter().copied(), [middle, half]);
         let [mut seen, mut bound] = [0.0_f64; 2];

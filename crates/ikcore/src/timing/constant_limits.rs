@@ -409,13 +409,13 @@ impl ConstantLimits {
 
     /// Whether `motion` keeps the limits of torques.
     pub(crate) fn keep_torque(&self, motion: &Trajectory) -> bool {
-        let most = 1.0 + ROUNDING;
-        self.torques.as_ref().is_none_or(|torques| torques.slowdown(motion, most) <= most)
+        self.torques.as_ref().is_none_or(|torques| torques.keeps(motion))
     }
 
     /// Whether `motion` keeps the limits of tips and of torques.
     pub(crate) fn keep_whole(&self, motion: &Trajectory) -> bool {
-        self.whole_slowdown(motion, 1.0 + ROUNDING) <= 1.0 + ROUNDING
+        let most = 1.0 + ROUNDING;
+        self.tips.as_ref().is_none_or(|tips| tips.slowdown(motion, most) <= most) && self.keep_torque(motion)
     }
 
     /// Factor by which `motion` must be slowed down to keep the limits of tips and of torques, or a bound of it up to `enough`; infinite where
@@ -428,7 +428,7 @@ impl ConstantLimits {
 
     /// Slows `motion` down as a whole where it exceeds the limits of tips or of torques. One on which a joint cannot hold the arm stays as it is.
     pub(super) fn slowed_as_a_whole(&self, motion: Trajectory) -> Result<Trajectory> {
-        if !self.limit_whole() {
+        if self.tips.is_none() && self.keep_torque(&motion) {
             return Ok(motion);
         }
         let factor = self.whole_slowdown(&motion, 1.0);
@@ -436,6 +436,12 @@ impl ConstantLimits {
             return Ok(motion);
         }
         motion.slowed(factor * (1.0 + TIGHT))
+    }
+
+    /// Slows `motion` down as a whole where it exceeds the limits of tips.
+    pub(super) fn slowed_for_tips(&self, motion: Trajectory) -> Result<Trajectory> {
+        let factor = self.tips.as_ref().map_or(0.0, |tips| tips.slowdown(&motion, 1.0));
+        if factor <= 1.0 { Ok(motion) } else { motion.slowed(factor * (1.0 + TIGHT)) }
     }
 
     /// Checks whether joints can hold the arm along lines; `None` without torque limits.

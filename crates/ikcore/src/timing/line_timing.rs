@@ -5,7 +5,7 @@ use super::polyline::JointPolyline;
 use super::quintic::quintic;
 use super::time_optimal::{TimingOptions, time};
 use super::time_scaling::{CAUTION, within_limits};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::one_joint::{JointProfile, MotionState, Rates, Transfer};
 use crate::math::vector::point_between;
 use crate::trajectory::{Trajectory, polynomial};
@@ -59,17 +59,25 @@ impl JointPolyline {
     /// Returns `motion`, made for these lines, within the limits of tips and torques: slowed down as a whole or, if accelerations may jump, the fastest motion
     /// along the lines, which slows down where they bind. Neither is faster than `motion`, so that looser limits are never slower.
     fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
-        if !limits.limit_whole() {
+        if limits.keep_whole(&motion) {
             return Ok(motion);
         }
-        let slowed = limits.slowed_as_a_whole(motion.clone())?;
-        if slowed == motion || limits.limit_jerk() || limits.require_accelerations("lines").is_err() {
-            return Ok(slowed);
+        let may_jump = !limits.limit_jerk() && limits.require_accelerations("lines").is_ok();
+        let is_one_line = self.0.len() == 2;
+        // Along a single line no motion is faster than the fastest along it.
+        let slowed = if may_jump && is_one_line { None } else { Some(limits.slowed_as_a_whole(motion.clone())?) };
+        if !may_jump {
+            return Ok(slowed.unwrap_or(motion));
         }
-        let along = time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default())?;
+        let along = match time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default()) {
+            Ok(along) => along,
+            // A joint cannot hold the arm.
+            Err(Error::Infeasible { .. }) if limits.limit_torque() => return Ok(slowed.unwrap_or(motion)),
+            Err(error) => return Err(error),
+        };
         let ahead = motion.duration() / along.duration();
         let along = if ahead > 1.0 { along.slowed(ahead)? } else { along };
-        Ok(if along.duration() < slowed.duration() { along } else { slowed })
+        Ok(slowed.filter(|slowed| slowed.duration() <= along.duration()).unwrap_or(along))
     }
 
     /// Moves from rest to rest along each line by a quintic.

@@ -7,7 +7,7 @@ use super::jerk_limited;
 use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
-use super::time_scaling::within_limits;
+use super::time_scaling::without_rounding;
 use super::torque_segments::KnownTorques;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
@@ -58,7 +58,8 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
         None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
     };
     if !limits.limit_jerk() {
-        return within_limits(compose(path, &profile)?, limits);
+        // The profile keeps torques for certain.
+        return without_rounding(limits.slowed_for_tips(compose(path, &profile)?)?, limits);
     }
     if options.start_speed != 0.0 || options.end_speed != 0.0 {
         let problem = "with jerk limits a motion begins and ends at rest: leave out start_speed and end_speed".into();

@@ -57,7 +57,11 @@ pub(crate) fn scaled(motion: &Trajectory, limits: &ConstantLimits) -> Result<Tra
 /// Slows a motion from rest to rest where it exceeds the limits of tips or torques, or where the rounding of its times makes it exceed
 /// those on velocity, acceleration and jerk of its joints.
 pub(super) fn within_limits(motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
-    let mut motion = limits.slowed_as_a_whole(motion)?;
+    without_rounding(limits.slowed_as_a_whole(motion)?, limits)
+}
+
+/// Slows a motion from rest to rest where the rounding of its times makes it exceed the limits.
+pub(super) fn without_rounding(mut motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
     let shortest = motion.knots().windows(2).map(|ends| ends[1] - ends[0]).fold(f64::INFINITY, f64::min);
     if shortest > SHORT * motion.duration() {
         return Ok(motion);

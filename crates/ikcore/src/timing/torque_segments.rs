@@ -19,8 +19,8 @@ use crate::math::majorant::Majorant;
 use crate::trajectory::{derivative_bounds, polynomial};
 use crate::wording::number;
 
-/// A segment is halved until the rests are at most this part of a limit.
-const NEGLIGIBLE: f64 = 2e-3;
+/// A segment is halved until the rests are at most this part of a limit: so small that a finer grid, on which they are smaller, saves no time by them.
+const NEGLIGIBLE: f64 = 3e-4;
 
 /// Most halvings of a segment: for small rests, and where a joint can hardly hold the arm.
 const DEEP: usize = 5;
