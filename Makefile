@@ -28,10 +28,10 @@ test-rust: lint-rust
 	cargo test --locked
 
 # The parts take about the same time: two cores share them with the tests of Rust, whichever ends first.
+PARTS := a-d e-l m-p q-z
 test-python: lint-python $(addprefix test-python-,$(PARTS))
 	$(BIN)/python -m mypy.stubtest beetle_ik._core
 
-PARTS  := a-d e-l m-p q-z
 test-python-%: $(VENV)/with-test
 	$(BIN)/python -m pytest tests/python/test_[$*]*.py
 

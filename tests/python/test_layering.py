@@ -81,3 +81,12 @@ def test_drawn_cases_come_from_a_seed(file: Path) -> None:
     assert not libraries(nodes) & UNSEEDED
     calls = [node for node in nodes if isinstance(node, ast.Call) and not node.args]
     assert not [call.lineno for call in calls if ast.unparse(call.func).endswith("default_rng")]
+
+
+def test_make_runs_each_file_of_tests_once() -> None:
+    recipe = (Path(__file__).parents[2] / "Makefile").read_text(encoding="utf-8")
+    before, _, after = recipe.partition("PARTS := ")
+    assert "$(PARTS)" not in before  # which make would take as nothing
+    parts = after.splitlines()[0].split()
+    letters = [file.stem[5] for file in TESTS if file.stem.startswith("test_")]
+    assert {sum(part[0] <= letter <= part[-1] for part in parts) for letter in letters} == {1}
