@@ -761,6 +761,7 @@ class Limits:
         tip_speed: float | Mapping[str, float] | None = None,
         tip_acceleration: float | Mapping[str, float] | None = None,
         tip_turn_speed: float | Mapping[str, float] | None = None,
+        torque: ArrayLike | None = None,
     ) -> Limits: ...
     @property
     def lower(self) -> _LimitOut:
