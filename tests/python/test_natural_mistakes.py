@@ -55,7 +55,7 @@ SOLVERS = (
             lambda: bik.Limits(vel=1.0),  # type: ignore[call-arg]
             bik.CallError,
             "Limits() got an unexpected keyword argument 'vel' (did you mean 'velocity'?); its arguments: lower, "
-            "upper, velocity, acceleration, jerk, tip_speed, tip_acceleration, tip_turn_speed",
+            "upper, velocity, acceleration, jerk, tip_speed, tip_acceleration, tip_turn_speed, torque",
         ),
         (
             lambda: bik.obstacles.Sphere(centre=(0, 0, 0), radius=0.1),  # type: ignore[call-arg]

@@ -1,7 +1,7 @@
 //! Forward dynamics: the accelerations that torques cause, from the mass matrix and its Cholesky factor.
 
-use super::bodies::Dynamics;
 use super::inverse::DynamicState;
+use super::rigid_bodies::Dynamics;
 use super::scratch::DynamicsScratch;
 
 /// Square of a pivot, relative to the entry of the mass matrix, below which its joint cannot be told from the others.

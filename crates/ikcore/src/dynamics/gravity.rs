@@ -1,6 +1,6 @@
 //! Torques that hold the bodies up, and their centre of mass.
 
-use super::bodies::Dynamics;
+use super::rigid_bodies::Dynamics;
 use super::scratch::{BodyState, DynamicsScratch};
 use super::wide_vectors::{axes_of, dot, lever, product};
 use crate::math::Frame;

@@ -4,7 +4,7 @@
 //! of each of its points, a + W x. The body with moments m, h, S about its origin needs the force m a + W h and the moment
 //! h x a + (sum over k of r_k x (W R S)_k), with R = (r_1, r_2, r_3) the axes of its frame: the antisymmetric part of W R S R'.
 
-use super::bodies::Dynamics;
+use super::rigid_bodies::Dynamics;
 use super::rotation_vector_rate::rate_of_left_jacobian;
 use super::scratch::{BodyState, DynamicsScratch};
 use super::wide_vectors::{axes_of, dot, lever, product, products};

@@ -3,7 +3,7 @@
 //! A stage that moves all that it carries at unit rate gives it a momentum p and an angular momentum L about the origin of its
 //! frame; each stage before it takes its share z . L, or z . p if it slides.
 
-use super::bodies::Dynamics;
+use super::rigid_bodies::Dynamics;
 use super::scratch::{BodyState, DynamicsScratch};
 use super::wide_vectors::{axes_of, dot, lever, product, products};
 use crate::kinematics::chain::Transmission;

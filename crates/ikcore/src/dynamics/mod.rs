@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `inertia` | mass, centre and inertia matrix of a body, and which are possible |
 //! | `mass_moments` | moments of a body, which add up |
-//! | `bodies` | moving bodies of a robot, gravity, friction and rotors |
+//! | `rigid_bodies` | moving bodies of a robot, gravity, friction and rotors |
 //! | `scratch`, `wide_vectors` | scratch memory and registers of the kernels |
 //! | `inverse` | recursive Newton-Euler algorithm: the torques of a motion |
 //! | `gravity` | torques that hold the bodies up, centre of mass |
@@ -15,20 +15,20 @@
 //! | `forward` | accelerations that torques cause |
 //! | `rotation_vector_rate` | angular acceleration of a floating base |
 
-mod bodies;
 mod forward;
 mod gravity;
 mod inertia;
 mod inverse;
 mod mass_matrix;
 mod mass_moments;
+mod rigid_bodies;
 mod rotation_vector_rate;
 mod scratch;
 mod wide_vectors;
 
-pub(crate) use bodies::MovingBody;
-pub use bodies::{Dynamics, JointDrive};
 pub use inertia::Inertia;
 pub use inverse::{AppliedWrench, DynamicState};
 pub(crate) use mass_moments::MassMoments;
+pub(crate) use rigid_bodies::MovingBody;
+pub use rigid_bodies::{Dynamics, JointDrive};
 pub use scratch::DynamicsScratch;

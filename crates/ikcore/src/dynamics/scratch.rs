@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::bodies::Dynamics;
+use super::rigid_bodies::Dynamics;
 use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::f64x4::F64x4;
 

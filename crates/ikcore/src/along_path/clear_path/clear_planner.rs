@@ -60,8 +60,8 @@ pub(crate) fn along_path(
     let mut planner = ClearPlanner::new(problem, space, problem.tip_path.knots(intervals(problem.tip_path)));
     match (planner.first_sequence()?, space) {
         (Ok(sequence), _) => planner.certified(sequence, monitor),
-        (Err(dead_end), Some(space)) => planner.least_deep(space, dead_end),
-        (Err(dead_end), None) => Err(planner.not_found(dead_end)?),
+        (Err(dead_end), Some(space)) => planner.least_deep(space, *dead_end),
+        (Err(dead_end), None) => Err(planner.not_found(*dead_end)?),
     }
 }
 
@@ -116,7 +116,7 @@ impl<'p> ClearPlanner<'p> {
 
     /// Returns the cheapest clear sequence, from as few postures as suffice.
     fn first_sequence(&mut self) -> Result<FoundSequence> {
-        let mut dead_end = Unreached { layer: 0, last: None };
+        let mut dead_end = Box::new(Unreached { layer: 0, last: None });
         for density in DENSITIES {
             let sampling = LayerSampling { fractions: &self.fractions, density };
             self.postures = postures(&mut self.passage, &self.price, &sampling)?;
@@ -260,7 +260,7 @@ impl<'p> ClearPlanner<'p> {
             Err(dead_end) => {
                 let PathProblem { robot, tip_path, options, .. } = self.problem;
                 let missed = missed_points(robot, tip_path, options.seed)?;
-                return Err(missed.map_or_else(|| self.not_found(dead_end), Ok)?);
+                return Err(missed.map_or_else(|| self.not_found(*dead_end), Ok)?);
             }
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.fractions), rows: sequence.concat() };

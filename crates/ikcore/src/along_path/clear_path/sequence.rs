@@ -60,7 +60,7 @@ pub(super) struct Unreached {
 }
 
 /// A sequence, or the layer at which it breaks off.
-pub(super) type FoundSequence = std::result::Result<Vec<Point>, Unreached>;
+pub(super) type FoundSequence = std::result::Result<Vec<Point>, Box<Unreached>>;
 
 /// Returns the cheapest sequence through `layers` at `fractions` of the path, each step of which leads along the path.
 /// Where the start is free, the joints begin at whatever whole turns keep them inside their limits.
@@ -79,7 +79,7 @@ pub(super) fn cheapest(
         passage.close_turns();
         let reached = reached?;
         if let Some(unreached) = unreached(layers, &reached) {
-            return Ok(Err(unreached));
+            return Ok(Err(Box::new(unreached)));
         }
         let mut ends = ends_by_cost(&reached).map(|end| traced(&reached, end));
         if let Some(sequence) = ends.find_map(|mut sequence| passage.shift_inside(&mut sequence).then_some(sequence)) {
@@ -87,8 +87,10 @@ pub(super) fn cheapest(
         }
     }
     let reached = reached(layers, fractions, price, passage)?;
-    Ok(unreached(layers, &reached)
-        .map_or_else(|| Ok(ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))), Err))
+    if let Some(unreached) = unreached(layers, &reached) {
+        return Ok(Err(Box::new(unreached)));
+    }
+    Ok(Ok(ends_by_cost(&reached).next().map_or_else(Vec::new, |end| traced(&reached, end))))
 }
 
 /// The first layer that no sequence reaches, if there is one.

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::document::{Document, UrdfKind};
 use super::mimic::{self, Coupling, Couplings};
-use super::off_chain::{self, Follower};
+use super::off_chain::{self, MimicFollower};
 use super::step;
 use super::tree::{Tree, TreeStep};
 use crate::error::{Error, Result};
@@ -50,7 +50,7 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
 }
 
 /// Adds masses, and the friction of mimic joints beside the chain.
-fn with_masses(document: &Document, robot: Robot, followers: &[Follower]) -> Result<Robot> {
+fn with_masses(document: &Document, robot: Robot, followers: &[MimicFollower]) -> Result<Robot> {
     let followers_of = |master: usize| followers.iter().filter(move |follower| follower.master == master);
     let robot = match followers {
         [] => robot,

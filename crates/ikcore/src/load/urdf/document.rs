@@ -110,7 +110,8 @@ impl Document {
             capsules.insert(name.to_owned(), link_capsules::read(name, link));
             match inertial::read(name, link) {
                 Ok(inertia) => inertias.extend(inertia.map(|inertia| LinkInertia { link: name.to_owned(), inertia })),
-                Err((error, point)) => {
+                Err(fault) => {
+                    let (error, point) = *fault;
                     faults.push(InertiaFault { owner: name.to_owned(), problem: error.to_string(), point });
                 }
             }

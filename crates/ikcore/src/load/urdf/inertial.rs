@@ -27,14 +27,14 @@ impl Default for JointLoad {
 
 /// Reads the inertia of a link; `None` without an element `inertial`. The error has the mass as a point, where only the matrix is
 /// impossible.
-pub(super) fn read(link: &str, node: Node) -> Result<Option<Inertia>, (Error, Option<Inertia>)> {
+pub(super) fn read(link: &str, node: Node) -> Result<Option<Inertia>, Box<(Error, Option<Inertia>)>> {
     let Some(inertial) = xml::children(node, "inertial").next() else { return Ok(None) };
     let owner = format!("<inertial> of link '{}'", shortened(link));
-    let inertia = numbers(inertial, &owner).map_err(|error| (error, None))?;
+    let inertia = numbers(inertial, &owner).map_err(|error| Box::new((error, None)))?;
     let Some(problem) = inertia.fault() else { return Ok(Some(inertia)) };
     let point = Inertia::point(inertia.mass, inertia.center);
     let point = if point.fault().is_none() { Some(point) } else { None };
-    Err((xml::error_at(inertial, format!("{owner}: {problem}")), point))
+    Err(Box::new((xml::error_at(inertial, format!("{owner}: {problem}")), point)))
 }
 
 /// Reads mass, centre and inertia matrix, possible or not.

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
 /// Mimic joint beside the chain that follows an independent joint.
-pub(super) struct Follower {
+pub(super) struct MimicFollower {
     pub(super) joint: Joint,
     /// Index of its master in q.
     pub(super) master: usize,
@@ -26,7 +26,7 @@ pub(super) fn of(
     robot: &Robot,
     mut couplings: Couplings,
     (index_in_q, moving): (&HashMap<usize, usize>, &[usize]),
-) -> Result<(OffChain, Vec<Follower>)> {
+) -> Result<(OffChain, Vec<MimicFollower>)> {
     let chain: Vec<&str> = robot.link_names().collect();
     let mut off_chain = OffChain::default();
     let mut drivers = index_in_q.clone();
@@ -47,7 +47,7 @@ pub(super) fn of(
                 };
                 if joint < robot.dof() && at.joint != coupling.master && !moving.contains(&at.joint) {
                     let described = step::described(document, at.joint)?;
-                    followers.push(Follower { joint: described, master: joint, scale: coupling.drive.scale });
+                    followers.push(MimicFollower { joint: described, master: joint, scale: coupling.drive.scale });
                 }
                 Some(DrivenJoint { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
             }
