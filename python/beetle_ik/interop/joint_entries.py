@@ -42,7 +42,9 @@ class JointEntries:
                 raise InvalidInputError(
                     f"{argument}: joint '{joint}' is missing, and moves the frame '{robot.tips[0]}'"
                 )
-        self._turns = degrees & np.array([kind != "prismatic" for kind in robot.joint_kinds])
+        turns = degrees & np.array([kind != "prismatic" for kind in robot.joint_kinds])
+        # From the units of the entries to rad and m.
+        self._unit = np.where(turns, np.pi / 180, 1.0)
         self.at = [self.names.index(joint) for joint in robot.joint_names]
 
     def read(self, name: str, values: ArrayLike) -> Array:
@@ -63,28 +65,24 @@ class JointEntries:
 
     def q(self, entries: Array) -> Array:
         """Returns the joint positions of the arm (n,) (rad, m)."""
-        joints = entries[self.at]
-        return np.where(self._turns, np.deg2rad(joints), joints)
+        return entries[self.at] * self._unit
 
     def placed(self, q: Array, entries: Array) -> Array:
         """Returns the entries with the joint positions q (n,) (rad, m) in their places."""
         placed = entries.copy()
-        placed[self.at] = np.where(self._turns, np.rad2deg(q), q)
+        placed[self.at] = q / self._unit
         return placed
 
     def limit(self, name: str, values: ArrayLike) -> Array:
         """Returns limits (n,) (rad, m) of a number or one per joint of the arm, in the order of the names."""
         limits = np.array(values, dtype=np.float64)
         if limits.ndim == 0:
-            return self._radians(np.full(len(self.at), limits))
+            return limits * self._unit
         if limits.shape != (len(self.at),):
             wanted = f"a number or {len(self.at)}, one per joint that moves the frame"
             raise InvalidInputError(f"{name}: expected {wanted}, got shape {limits.shape}")
-        return self._radians(limits[np.argsort(np.argsort(self.at))])
+        return limits[np.argsort(np.argsort(self.at))] * self._unit
 
     def most(self, degrees: float) -> Array:
         """Returns a bound (n,) (rad) of the joints that turn; joints that slide have none."""
-        return np.where(self._turns, np.deg2rad(degrees), np.inf)
-
-    def _radians(self, values: Array) -> Array:
-        return np.where(self._turns, np.deg2rad(values), values)
+        return np.where(self._unit == 1.0, np.inf, degrees * self._unit)

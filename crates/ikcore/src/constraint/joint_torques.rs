@@ -27,6 +27,15 @@ pub(crate) struct JointTorques {
     limits: Vec<f64>,
 }
 
+/// Derivatives of a path as velocities and accelerations.
+#[derive(Debug, Clone, Copy)]
+enum Derivatives {
+    /// The first and the second.
+    Both,
+    /// None, and the first.
+    FirstAsAcceleration,
+}
+
 /// Friction of a joint: dry (N m, N), and per velocity (N m s/rad, N s/m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Friction {
@@ -165,32 +174,28 @@ impl JointTorques {
     pub fn write_terms(&self, at: &mut TorquePoint, terms: &mut TorqueTerms) {
         self.write_hold(at, &mut terms.hold);
         self.write_square(at, terms);
-        self.inverse(at, [false, false, true], &mut terms.of_change);
+        self.inverse(at, Derivatives::FirstAsAcceleration, &mut terms.of_change);
         terms.of_change.iter_mut().zip(&terms.hold).for_each(|(torque, hold)| *torque -= hold);
     }
 
     /// Writes what holds the arm at a point.
     pub(super) fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
         self.robot.write_frames(&at.q, &mut at.scratch.frames);
-        self.inverse(at, [false, false, false], hold);
+        self.dynamics.holding(&mut at.scratch, hold);
     }
 
     /// Writes the factors of (ds/dt)^2.
     fn write_square(&self, at: &mut TorquePoint, terms: &mut TorqueTerms) {
-        self.inverse(at, [true, true, false], &mut terms.of_square);
+        self.inverse(at, Derivatives::Both, &mut terms.of_square);
         terms.of_square.iter_mut().zip(&terms.hold).for_each(|(torque, hold)| *torque -= hold);
     }
 
-    /// Writes the torques with the first derivative as velocity, and the second or the first as acceleration, where asked for.
-    fn inverse(&self, at: &mut TorquePoint, [moves, bends, starts]: [bool; 3], torques: &mut [f64]) {
+    /// Writes the torques with these derivatives as velocities and accelerations.
+    fn inverse(&self, at: &mut TorquePoint, derivatives: Derivatives, torques: &mut [f64]) {
         let TorquePoint { q, first, second, zero, scratch } = at;
-        let qd = if moves { &*first } else { &*zero };
-        let qdd = if bends {
-            &*second
-        } else if starts {
-            &*first
-        } else {
-            &*zero
+        let [qd, qdd] = match derivatives {
+            Derivatives::Both => [&*first, &*second],
+            Derivatives::FirstAsAcceleration => [&*zero, &*first],
         };
         self.dynamics.inverse_without_friction(&DynamicState { q, qd, qdd }, &[], scratch, torques);
     }

@@ -69,6 +69,8 @@ struct Builder<'a> {
     torques: &'a JointTorques,
     point: TorquePoint,
     bend: BendScratch,
+    /// Where the last segment ends, in a piece, and the terms there.
+    last: Option<(usize, f64, TorqueTerms)>,
 }
 
 /// Returns the bounds by joint torques over these segments of `path`, at whose ends x is at most that of `curve`; none without limits.
@@ -83,7 +85,8 @@ pub(super) fn torque_bounds(
     known: &mut KnownTorques,
 ) -> Result<Vec<Rc<TorqueBounds>>> {
     let Some(torques) = &limits.torques else { return Ok(vec![]) };
-    let mut builder = Builder { path, limits, torques, point: torques.point(), bend: torques.bend_scratch() };
+    let (point, bend) = (torques.point(), torques.bend_scratch());
+    let mut builder = Builder { path, limits, torques, point, bend, last: None };
     let mut all = Vec::with_capacity(segments.len());
     for (i, segment) in segments.iter().enumerate() {
         checkpoint_at(i)?;
@@ -146,7 +149,13 @@ impl Part {
 
 impl Builder<'_> {
     fn bounds(&mut self, segment: &Segment, largest_x: f64) -> Result<TorqueBounds> {
-        let terms = [self.terms(segment, 0.0)?, self.terms(segment, segment.length)?];
+        let start = match self.last.take() {
+            Some((piece, from, terms)) if piece == segment.piece && from == segment.from => terms,
+            _ => self.terms(segment, 0.0)?,
+        };
+        let end = self.terms(segment, segment.length)?;
+        self.last = Some((segment.piece, segment.from + segment.length, end.clone()));
+        let terms = [start, end];
         let most = [self.largest_u(segment, largest_x), largest_x];
         let mut parts = Vec::with_capacity(1);
         self.push(segment, most, Open { ends: [0.0, segment.length], terms, halvings: 0 }, &mut parts)?;
@@ -181,7 +190,7 @@ impl Builder<'_> {
             is_tight &= !(rest > NEGLIGIBLE * limit);
         }
         if holds && (is_tight || halvings >= DEEP) {
-            let drags = self.drags(segment, [from, to], fastest[1], [&start, &middle, &end]);
+            let drags = self.drags(segment, [from, to], fastest[1], ([&start, &middle, &end], &rests));
             parts.push(Part { from, length: to - from, terms: [start, middle, end], rests, drags });
             return Ok(());
         }
@@ -226,7 +235,13 @@ impl Builder<'_> {
     }
 
     /// Friction over a part of a segment on which (ds/dt)^2 is at most `square`.
-    fn drags(&self, segment: &Segment, [from, to]: [f64; 2], square: f64, terms: [&TorqueTerms; 3]) -> Vec<[Drag; 2]> {
+    fn drags(
+        &self,
+        segment: &Segment,
+        [from, to]: [f64; 2],
+        square: f64,
+        (terms, rests): ([&TorqueTerms; 3], &[Rest]),
+    ) -> Vec<[Drag; 2]> {
         let half = 0.5 * (to - from);
         let of_joint = |(joint, limit): (usize, &f64)| {
             let [_, first, second] = self.path.joint_at(segment.piece, segment.from + from + half, joint);
@@ -235,7 +250,8 @@ impl Builder<'_> {
             let hold = control_points(terms.map(|terms| terms.hold[joint]));
             let largest = hold.into_iter().fold(0.0_f64, |largest, hold| largest.max(hold.abs()));
             let friction = self.torques.friction(joint);
-            [first + most, most - first].map(|rate| friction.drag(rate, limit - largest, square))
+            let room = limit - largest - rests[joint][2];
+            [first + most, most - first].map(|rate| friction.drag(rate, room, square))
         };
         self.torques.limits().iter().enumerate().map(of_joint).collect()
     }
