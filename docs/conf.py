@@ -81,6 +81,8 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120  # s
 nb_merge_streams = True
 
+# Attributes of a docstring are fields of the class, not items of their own beside its members.
+napoleon_use_ivar = True
 autodoc_default_options = {
     "members": True,
     "undoc-members": True,
