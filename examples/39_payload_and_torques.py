@@ -21,28 +21,35 @@ reach = np.linalg.norm(robot.fk(q)[:, :2, 3], axis=1)
 
 # %%
 # Torques as a share of the limits of the maker, at rest.
-figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
 for mass in (0.0, 1.5, 3.0, 4.5):
     holding = robot.with_payload(mass, center=(0, 0, 0.1)).torques(q)
     worst = np.max(np.abs(holding) / robot.torque_limit, axis=1)
-    left.plot(reach, 100 * worst, label=f"{mass:g} kg")
-left.set(xlabel="reach [m]", ylabel="most loaded motor [%]", title="holding still")
-left.legend()
+    axes.plot(reach, 100 * worst, label=f"{mass:g} kg")
+axes.set(xlabel="reach [m]", ylabel="most loaded motor [%]", title="holding still")
+axes.legend()
+plt.show()
 
 # %%
-# The same motion, empty and with 3 kg, against the torque of the second motor.
+# The same motion, empty and with 3 kg, by the torque of the second motor; then the
+# fastest one with 3 kg that keeps 90 % of the limits at every instant.
+carrying = robot.with_payload(3.0, center=(0, 0, 0.1))
 limits = bik.Limits(velocity=1.5, acceleration=5.0)
-plan = bik.plan_point_to_point(
-    robot, start_q=folded, end_q=stretched, limits=limits
-)
-time = np.linspace(0.0, plan.trajectory.duration, 200)
-for mass in (0.0, 3.0):
-    torques = plan.trajectory.torques(robot.with_payload(mass), time)
-    right.plot(time, torques[:, 1], label=f"{mass:g} kg")
-for limit in (-87.0, 87.0):
-    right.axhline(limit, color="k", linewidth=0.8)
-right.set(xlabel="time [s]", ylabel="torque of joint 2 [N m]", title="moving")
-right.legend()
+within = bik.Limits(velocity=1.5, acceleration=5.0, torque=0.9 * robot.torque_limit)
+figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
+for name, arm, kept in (
+    ("empty", robot, limits),
+    ("3 kg", carrying, limits),
+    ("3 kg, torques kept", carrying, within),
+):
+    plan = bik.plan_point_to_point(
+        arm, start_q=stretched, end_q=folded, limits=kept
+    )
+    time = np.linspace(0.0, plan.trajectory.duration, 200)
+    axes.plot(time, plan.torques(time)[:, 1], label=name)
+axes.axhline(-0.9 * 87.0, color="k", linewidth=0.8)
+axes.set(xlabel="time [s]", ylabel="torque of joint 2 [N m]", title="moving")
+axes.legend()
 plt.show()
 
 # %%
