@@ -81,8 +81,9 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120  # s
 nb_merge_streams = True
 
-# Attributes of a docstring are fields of the class, not items of their own beside its members.
+# Attributes of a docstring are fields, not items beside the members of the class.
 napoleon_use_ivar = True
+
 autodoc_default_options = {
     "members": True,
     "undoc-members": True,
