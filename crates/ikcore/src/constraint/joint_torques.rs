@@ -321,22 +321,25 @@ impl IntervalFactor for TorqueFactor<'_> {
     fn over(&mut self, polynomials: &[Coefficients], [middle, half]: [f64; 2]) -> [f64; 2] {
         let Self { torques, judged, span, point, nodes, rests, bend } = self;
         span.set_joints(polynomials.iter().copied(), [middle, half]);
+        let per_second = 1.0 / half;
         for (x, terms) in [-1.0, 0.0, 1.0].into_iter().zip(nodes.iter_mut()) {
             span.write(x, [&mut point.q, &mut point.first, &mut point.second]);
+            // To seconds before torques are subtracted from one another: the rounding of that would grow without end in short intervals.
+            point.first.iter_mut().for_each(|rate| *rate *= per_second);
+            point.second.iter_mut().for_each(|change| *change *= per_second * per_second);
             torques.write_hold(point, &mut terms.hold);
             torques.write_square(point, terms);
         }
         torques.rests::<HOLD_AND_SQUARE>(|joint| span.rates(joint), |joint| span.farthest(joint), bend, rests);
-        let per_second = half.powi(-2);
         let [mut seen, mut bound] = [0.0_f64; 2];
         for (joint, limit) in torques.limits.iter().enumerate() {
             if *limit == f64::INFINITY || matches!(judged, Judged::Share(Some(only)) if *only != joint) {
                 continue;
             }
-            let of_motion = control_points(nodes.each_ref().map(|terms| per_second * terms.of_square[joint]));
+            let of_motion = control_points(nodes.each_ref().map(|terms| terms.of_square[joint]));
             let hold = control_points(nodes.each_ref().map(|terms| terms.hold[joint]));
             let [rest_of_hold, rest_of_motion, _] = rests[joint];
-            let rest = [per_second * rest_of_motion, rest_of_hold];
+            let rest = [per_second * per_second * rest_of_motion, rest_of_hold];
             let friction = torques.friction(joint);
             let factor = |of_motion: f64, hold: f64, rest: [f64; 2], [slowest, fastest]: [f64; 2]| {
                 let of_side = |sign: f64, rate: f64| {
@@ -349,9 +352,9 @@ impl IntervalFactor for TorqueFactor<'_> {
                 };
                 of_side(1.0, fastest).max(of_side(-1.0, -slowest))
             };
-            let rate = span.rate(joint, 0.0) / half;
-            seen = seen.max(factor(per_second * nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2], [rate; 2]));
-            let rates = span.rate_range(joint).map(|rate| rate / half);
+            let rate = span.rate(joint, 0.0) * per_second;
+            seen = seen.max(factor(nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2], [rate; 2]));
+            let rates = span.rate_range(joint).map(|rate| rate * per_second);
             for (of_motion, hold) in of_motion.into_iter().zip(hold) {
                 bound = bound.max(factor(of_motion, hold, rest, rates));
             }

@@ -65,7 +65,8 @@ impl Robot {
                     dynamics.holding(scratch, torques);
                     continue;
                 }
-                let state = DynamicState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
+                let state =
+                    DynamicState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
                 applied.clear();
                 let first = if wrenches.len() > tips { row * tips } else { 0 };
                 for (tip, wrench) in wrenches.iter().skip(first).take(tips).enumerate() {

@@ -256,18 +256,11 @@ impl<'a> TorqueSegments<'a> {
 
     fn too_heavy(&self, segment: &Segment, at: f64, found: Option<TooHeavy>) -> Error {
         let s = number(self.path.breaks()[segment.piece] + segment.from + at);
-        let Some(TooHeavy { joint, torque, limit }) = found else {
-            let problem =
-                format!("at s = {s} of the path a joint can hardly hold the arm, or not move it against its friction");
-            return Error::Infeasible { problem: problem.into() };
+        let problem = match found {
+            Some(found) => self.limits.heavy_in_words(found),
+            None => "a joint can hardly hold the arm, or not move it against its friction".into(),
         };
-        let [torque, limit] = [torque.abs(), limit].map(number);
-        let unit = self.limits.torque_unit(joint);
-        let name = self.limits.joint_name(joint);
-        let problem = format!(
-            "at s = {s} of the path joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}"
-        );
-        Error::Infeasible { problem: problem.into() }
+        Error::Infeasible { problem: format!("at s = {s} of the path {problem}").into() }
     }
 }
 
