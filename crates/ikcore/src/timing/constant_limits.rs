@@ -431,11 +431,17 @@ impl ConstantLimits {
         if self.tips.is_none() && self.keep_torque(&motion) {
             return Ok(motion);
         }
-        let factor = self.whole_slowdown(&motion, 1.0);
-        if factor <= 1.0 || factor.is_infinite() {
-            return Ok(motion);
+        Ok(self.slowed_if_held(&motion)?.unwrap_or(motion))
+    }
+
+    /// [`slowed_as_a_whole`](Self::slowed_as_a_whole); `None` where a joint cannot hold the arm.
+    pub(super) fn slowed_if_held(&self, motion: &Trajectory) -> Result<Option<Trajectory>> {
+        let factor = self.whole_slowdown(motion, 1.0);
+        if factor.is_infinite() {
+            return Ok(None);
         }
-        motion.slowed(factor * (1.0 + TIGHT))
+        let motion = motion.clone();
+        if factor <= 1.0 { Ok(Some(motion)) } else { motion.slowed(factor * (1.0 + TIGHT)).map(Some) }
     }
 
     /// Slows `motion` down as a whole where it exceeds the limits of tips.
