@@ -233,7 +233,7 @@ def send_bytes(peer: Peer, domain: int, data: bytes, number: int) -> None:
             port.sendto(packet, ("127.0.0.1", 7400 + 250 * domain + 11 + 2 * participant))
 
 
-@pytest.mark.parametrize("data", [b"\xff" * 20, b"\0" * 8 + b"\x10\0\0\0abcd", b"\0" * 4], ids=["counts", "ends", "short"])
+@pytest.mark.parametrize("data", [b"\xff" * 20, b"\0" * 8 + b"\x10\0\0\0abcd", b"\0" * 4])
 def test_bytes_of_no_message_leave_a_line(node: Node, domain: int, data: bytes) -> None:
     peer = Peer(domain)
     peer.send("description", msg.String(URDF))
@@ -248,7 +248,7 @@ def test_bytes_of_no_message_leave_a_line(node: Node, domain: int, data: bytes) 
 
 
 def test_an_end_does_not_search_for_garbage(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(node: ros_node.Node) -> None:
+    def interrupted(_node: ros_node.Node) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(ros_node.Node, "__init__", lambda *_: None)

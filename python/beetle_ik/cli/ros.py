@@ -76,7 +76,7 @@ def ros(
     try:
         node.run()
     except KeyboardInterrupt:
-        gc.freeze()  # the system frees all at once; searching it for cycles takes ten times as long as the rest of the end
+        gc.freeze()  # what is left is freed by the system: to search it for cycles first takes most of the end
         raise typer.Exit from None  # the way to end it
 
 
