@@ -3723,7 +3723,7 @@ def state_to_state(
         end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 
     Returns:
-        A `Trajectory` of cubic segments.
+        A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
 
     Raises:
         TypeError: limits that are no `Limits`.
@@ -3784,7 +3784,8 @@ def time_optimal(
 
     Returns:
         A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-        points. With jerk limits it consists of quintic segments that meet the path at their ends.
+        points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+        or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -4679,6 +4680,7 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+        start_outside: joints that begin outside their limits, each (joint, value, limit), as the attribute says.
 
     For example:
 
@@ -4689,7 +4691,12 @@ class Trajectory:
     """
 
     def __new__(
-        cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
+        cls,
+        time: ArrayLike,
+        coefficients: ArrayLike,
+        *,
+        joint_names: list[str] | None = None,
+        start_outside: list[tuple[str, float, float]] | None = None,
     ) -> Trajectory: ...
     @staticmethod
     def from_samples(
@@ -4724,6 +4731,11 @@ class Trajectory:
     @property
     def joint_names(self) -> list[str]:
         """Names of the joints, in the order of q."""
+    @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m): of the motions of
+        `state_to_state`, `time_optimal` and plans. Files do not hold them.
+        """
     def max_velocity(self) -> _Array:
         """Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
     def max_acceleration(self) -> _Array:

@@ -7,7 +7,7 @@ use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::constraint::{HoldCheck, JointTorques, TIGHT, TipExcess, TipRates, TooHeavy, TorqueExcess};
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
+use crate::limits::{Field, JointOutside, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
@@ -159,6 +159,18 @@ impl ConstantLimits {
             }
         }
         Ok(())
+    }
+
+    /// Joints that are outside their position limits at the start of `motion`, beyond rounding.
+    pub fn start_outside(&self, motion: &Trajectory) -> Vec<JointOutside> {
+        let joint = |(j, value): (usize, f64)| {
+            let (lower, upper) = (self.lower[j], self.upper[j]);
+            let limit = value.clamp(lower, upper);
+            let (joint, kind) = &self.joints[j];
+            let is_outside = (value - limit).abs() > limit_rounding(lower, upper);
+            is_outside.then(|| JointOutside::new(joint.clone(), *kind, value, limit))
+        };
+        motion.start().into_iter().enumerate().filter_map(joint).collect()
     }
 
     /// Limits on derivatives of the position, with their names.

@@ -45,7 +45,8 @@ const METHOD: &str = "time_optimal";
 ///
 /// Returns:
 ///     A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-///     points. With jerk limits it consists of quintic segments that meet the path at their ends.
+///     points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+///     or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -120,9 +121,10 @@ pub fn time_optimal(
     };
     let tolerance = tolerance.map(|given| PerJoint::read("tolerance", given)).transpose()?;
     let tolerance = tolerance.map(|given| if given.single { vec![given.values[0]; n] } else { given.values });
-    long_call(py, || match tolerance {
+    let core = long_call(py, || match tolerance {
         None => fastest(&path()?, &limits, &options),
         Some(tolerance) => time_optimal_within(&path()?, &tolerance, &limits, &options),
-    })
-    .map(PyTrajectory::from)
+    })?;
+    let outside = limits.start_outside(&core);
+    Ok(PyTrajectory::led(core, &outside))
 }
