@@ -202,7 +202,7 @@ impl Climber<'_> {
 
 /// The move at the length `at` of a path, and the length along that move.
 fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
-    let index = path.pieces[path.piece_at(at)].index;
-    let begin = path.pieces.iter().position(|piece| piece.index == index).map_or(0.0, |first| path.breaks[first]);
-    (index, at - begin)
+    let i = path.piece_at(at);
+    let piece = &path.pieces[i];
+    (piece.index, piece.from + at - path.breaks[i])
 }
