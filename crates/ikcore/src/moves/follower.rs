@@ -22,8 +22,10 @@ const DAMPING: f64 = 0.05;
 /// Longest step along the path (m), and as a part of a turn by a radian.
 const LONGEST_STEP: f64 = 0.05;
 const PART_OF_TURN: f64 = 0.25;
-/// Largest change of a joint in a step (rad, m), and the halvings after which the path counts as lost.
+/// Largest change of a joint in a step (rad, m), and its largest difference from what is expected: beyond, another branch may be met.
 const LARGEST_CHANGE: f64 = 0.4;
+const LARGEST_SURPRISE: f64 = 0.1;
+/// Halvings after which the path counts as lost.
 const HALVINGS: i32 = 10;
 
 /// Largest distance (m) and angle (rad) of the tip from its path between knots.
@@ -134,7 +136,11 @@ impl<'a> Follower<'a> {
                 q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
                 self.bounds.clip(&mut q);
             }
-            if self.project(path, next, &mut q) && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE {
+            let expected = q.clone();
+            if self.project(path, next, &mut q)
+                && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE
+                && largest_difference(&q, &expected) <= LARGEST_SURPRISE
+            {
                 track.push(next, &q);
                 at = next;
                 step = (2.0 * step).min(even);
