@@ -3,6 +3,7 @@
 import json
 import logging
 import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -126,14 +127,21 @@ def recording(rng: np.random.Generator, rows: int, joints: int) -> np.ndarray:
 def test_noise_that_sets_the_duration_is_told(jerk: float | None) -> None:
     limits = bik.Limits(velocity=2.0, acceleration=10.0, jerk=jerk)
     told = re.compile(r"joint 'q\d' jitters by (.*) from row to row, and this noise sets the duration: (.*) s, "
-                      r"without it (.*) s at most; give tolerance=(.*), which smooths it")  # fmt: skip
+                      r"without it about (.*) s; give tolerance=(.*), which smooths it")  # fmt: skip
+    told_of = 0
     for seed in range(6):
         rng = np.random.default_rng(seed)
         rows = recording(rng, int(rng.integers(300, 900)), int(rng.integers(1, 7)))
         step = float(rng.choice([2 * np.pi / 4096, 1e-3, 0.005]))
         noisy = np.round(rows / step) * step if seed % 2 else rows + 0.3 * step * rng.normal(size=rows.shape)
-        with pytest.warns(UserWarning) as warned:
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
             exact = bik.time_optimal(noisy, limits)
+        if not warned:
+            # It costs little.
+            assert exact.duration < 1.3 * bik.time_optimal(noisy, limits, tolerance=2 * step).duration
+            continue
+        told_of += 1
         said = told.fullmatch(str(warned[0].message))
         assert said is not None, str(warned[0].message)
         jitter, duration, without, tolerance = map(float, said.groups())
@@ -141,9 +149,10 @@ def test_noise_that_sets_the_duration_is_told(jerk: float | None) -> None:
         assert duration == pytest.approx(exact.duration, rel=1e-3)
         # What it says comes true, and is then not said again.
         smooth = bik.time_optimal(noisy, limits, tolerance=tolerance)
-        assert smooth.duration <= 1.001 * without < 0.8 * duration
+        assert smooth.duration <= 1.02 * without < 0.82 * duration
         with pytest.warns(UserWarning, match=f"give tolerance={said[4]}, "):
             bik.time_optimal(noisy, limits, tolerance=0.1 * jitter)
+    assert told_of >= 3
 
 
 def test_paths_without_noise_are_not_called_noisy() -> None:

@@ -52,7 +52,7 @@ impl RecordedNoise {
         let [with, without] = self.durations.map(number);
         message![
             format!(
-                "joint '{}' jitters by {} from row to row, and this noise sets the duration: {with} s, without it {without} s at most; \
+                "joint '{}' jitters by {} from row to row, and this noise sets the duration: {with} s, without it about {without} s; \
                  give ",
                 self.joint,
                 number(self.jitter)
