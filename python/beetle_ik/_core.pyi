@@ -3780,7 +3780,8 @@ def time_optimal(
         robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
             `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
-    Equal consecutive rows, as a recording has at rest, are one waypoint.
+    Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
+    says so: by how much which joint jitters, and the `tolerance` that smooths it.
 
     Returns:
         A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
