@@ -1,0 +1,224 @@
+//! Torque limits of a tracked arm: in every command, and in the stop after it.
+//!
+//! A stop brakes with a part of the acceleration limits, the same for all joints: what the motors can give there. A command that is not
+//! certified is tried with a milder stop, or moved towards the command that brakes, which was certified with the command before. Where there
+//! is room, the stop becomes harder again.
+
+use super::around_arm::require_constant;
+use super::safety_filter::SafetyFilter;
+use super::stop_torques::{Overload, StopTorques};
+use super::tip_pace::TipPace;
+use super::tracked_arm::TrackedArm;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits};
+use crate::math::vector::write_within;
+use crate::message::{Setting, message};
+use crate::objective::Point;
+use crate::robot::{JointKind, Robot};
+use crate::wording::number;
+
+/// Commands tried in a tick beside the one asked for.
+const TRIES: usize = 4;
+
+/// Smallest part of the acceleration limits of a stop, and the largest change of that part which a single tick makes.
+const LEAST_PART: f64 = 0.05;
+const HARDER: f64 = 1.25;
+
+/// Used part of the torque limits below which a harder stop is tried.
+const AMPLE: f64 = 0.75;
+
+/// Part of a command below which the arm rather brakes.
+const SHORTEST: f64 = 0.02;
+
+/// Parts of the acceleration limits tried by an arm whose stop is no longer certified.
+const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
+
+/// Torque limits of an arm, and what of them holds it back.
+#[derive(Debug)]
+pub(super) struct TorquePace {
+    stop: StopTorques,
+    held_by: Option<Overload>,
+    /// Whether the stop after the last command is certified. A payload that changes in the hand ends that.
+    certified: bool,
+}
+
+/// What else a command has to satisfy.
+pub(super) struct OtherLimits<'a> {
+    pub safety: Option<&'a mut SafetyFilter>,
+    pub pace: Option<&'a mut TipPace>,
+}
+
+impl TorquePace {
+    /// The torque limits of `robot`; `None` without any.
+    ///
+    /// # Errors
+    /// [`Error::NoDynamics`]; [`Error::UnsupportedLimit`] for joints without an acceleration limit, for limits that vary over time, and for a
+    /// base that floats.
+    pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
+        let Some(stop) = StopTorques::new(robot, limits)? else { return Ok(None) };
+        let accelerations = limits.field(Field::Acceleration).unwrap_or_default();
+        let is_free = |j: usize| accelerations.get(j).is_none_or(|limit| limit.at(0.0) == f64::INFINITY);
+        if let Some(joint) = (0..limits.dof()).find(|j| is_free(*j)) {
+            let remedy = message![
+                format!("joint '{}' may change its velocity at once, which takes any torque: give ", limits.joint_name(joint)),
+                Setting::Limit("acceleration"),
+            ];
+            return Err(Error::UnsupportedLimit { field: "torque".into(), method: "track".into(), remedy });
+        }
+        require_constant(
+            limits,
+            "tracking with torque limits",
+            "limits that vary can ask for more torque than there is; give numbers",
+        )?;
+        Ok(Some(Box::new(Self { stop, held_by: None, certified: true })))
+    }
+
+    /// Checks that the joints can hold the arm at `q`, the argument `what`.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] names joint, torque and limit.
+    pub fn require_held(&mut self, what: &str, q: &[f64], robot: &Robot) -> Result<()> {
+        self.stop.too_heavy(q).map_or(Ok(()), |overload| {
+            Err(Error::Unreachable { what: what.into(), problem: overload.in_words("needs", robot).into() })
+        })
+    }
+
+    /// Carries the masses of `robot` from now on: no stop is certified for them yet.
+    ///
+    /// # Errors
+    /// [`Error::NoDynamics`]; nothing has changed then.
+    pub fn carry(&mut self, robot: &Robot, limits: &Limits) -> Result<()> {
+        if let Some(stop) = StopTorques::new(robot, limits)? {
+            self.stop = stop;
+        }
+        self.restart();
+        Ok(())
+    }
+
+    /// Forgets what held the arm, and the stop.
+    pub fn restart(&mut self) {
+        (self.held_by, self.certified) = (None, false);
+    }
+
+    /// Whether the stop after the last command is certified.
+    pub fn is_certified(&self) -> bool {
+        self.certified
+    }
+
+    /// What holds the arm back, in words.
+    pub fn held_in_words(&self, robot: &Robot) -> Option<String> {
+        let verb = if self.certified { "would need" } else { "needs" };
+        self.held_by.as_ref().map(|overload| overload.in_words(verb, robot))
+    }
+
+    /// Whether a limit holds the arm back.
+    pub fn holds(&self) -> bool {
+        self.held_by.is_some()
+    }
+
+    /// Changes the command `q`, which `others` allow, to one that keeps the limits with the stop after it; a `settled` arm is held by what held
+    /// it before. Returns whether it did.
+    pub fn keep(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>, settled: bool, q: &mut Point) -> bool {
+        match self.stop.check(&arm.context(), q) {
+            Ok(used) => {
+                self.certified = true;
+                if !settled {
+                    self.held_by = None;
+                }
+                if used < AMPLE && arm.braking_part() < 1.0 {
+                    self.stop_harder(arm, &mut others, q);
+                }
+                false
+            }
+            Err(overload) => {
+                self.held_by = Some(overload);
+                let wanted = q.clone();
+                self.shorten(arm, &mut others, overload, q);
+                *q != wanted
+            }
+        }
+    }
+
+    /// Replaces the command `q`, of which a torque is beyond its limit.
+    fn shorten(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, overload: Overload, q: &mut Point) {
+        let stop_part = arm.braking_part();
+        let (brake, wanted) = (arm.context().braking(), q.clone());
+        let (mut part, mut failed) = (1.0, Some(overload));
+        for _ in 0..TRIES {
+            let milder = failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
+            match failed {
+                Some(_) if milder >= LEAST_PART => arm.set_braking_part(milder),
+                Some(found) => part *= self.stop.part_within(&arm.context(), &brake, found.tick),
+                None => part *= 0.5,
+            }
+            if part < SHORTEST {
+                break;
+            }
+            write_within(&brake, &wanted, part, q);
+            failed = match self.check(arm, others, q) {
+                Ok(()) => {
+                    self.certified = true;
+                    return;
+                }
+                Err(found) => found,
+            };
+        }
+        arm.set_braking_part(stop_part);
+        q.copy_from_slice(&brake);
+        if !self.certified {
+            self.stop_somehow(arm, others, q);
+        }
+    }
+
+    /// Finds a stop for an arm that has none: the hardest that is certified or, failing that, the one of before.
+    fn stop_somehow(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &mut Point) {
+        let before = arm.braking_part();
+        for part in OTHER_PARTS {
+            arm.set_braking_part(part);
+            let brake = arm.context().braking();
+            if self.check(arm, others, &brake).is_ok() {
+                self.certified = true;
+                q.copy_from_slice(&brake);
+                return;
+            }
+        }
+        arm.set_braking_part(before);
+    }
+
+    /// Makes the stop after the command `q` harder, if that is certified too.
+    fn stop_harder(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &[f64]) {
+        let before = arm.braking_part();
+        arm.set_braking_part((HARDER * before).min(1.0));
+        if self.check(arm, others, q).is_err() {
+            arm.set_braking_part(before);
+        }
+    }
+
+    /// Checks a command and the stop after it; the error is the torque beyond its limit, or none if something else forbids them.
+    fn check(
+        &mut self,
+        arm: &TrackedArm,
+        others: &mut OtherLimits<'_>,
+        q: &[f64],
+    ) -> std::result::Result<(), Option<Overload>> {
+        let context = arm.context();
+        if !arm.limited.as_ref().is_none_or(|limited| limited.stops_inside(&arm.q, q, &arm.tick_box)) {
+            return Err(None);
+        }
+        self.stop.check(&context, q).map_err(Some)?;
+        let is_slow = others.pace.as_mut().is_none_or(|pace| pace.allows(&context, q));
+        let is_clear = || others.safety.as_mut().is_none_or(|safety| safety.allows_command(&context, q));
+        if is_slow && { is_clear }() { Ok(()) } else { Err(None) }
+    }
+}
+
+impl Overload {
+    /// The joint, its torque and its limit in words; `verb` is what the joint does about the torque.
+    fn in_words(&self, verb: &str, robot: &Robot) -> String {
+        let joint = &robot.joints()[self.joint];
+        let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N m" };
+        let [torque, limit] = [self.torque.abs(), self.limit].map(number);
+        let what = if self.is_at_rest { "hold the arm" } else { "move the arm" };
+        format!("joint '{}' {verb} {torque} {unit} to {what}, its limit is {limit} {unit}", joint.name)
+    }
+}
