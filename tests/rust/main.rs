@@ -124,6 +124,7 @@ mod tracking {
     mod settling;
     mod streams;
     mod tips;
+    mod torques;
     mod track;
     mod way_back;
     mod work;

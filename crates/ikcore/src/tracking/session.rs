@@ -17,7 +17,7 @@ use super::tip_pace::TipPace;
 use super::torque_pace::{OtherLimits, TorquePace};
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
-use super::way_back::{EndOfTick, Next, WayBack};
+use super::way_back::{EndOfTick, Lines, Next, WayBack};
 use crate::constraint::{Keep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
@@ -324,7 +324,8 @@ impl Session {
         let Some(way_back) = self.way_back.as_mut().filter(|_| !self.stopping) else { return };
         let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
         let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
-        let next = way_back.end_tick(end, self.safety.as_deref_mut());
+        let lines = Lines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
+        let next = way_back.end_tick(end, lines);
         found.evaluations += way_back.evaluations();
         match next {
             Next::Continue => {}
@@ -367,9 +368,7 @@ impl Session {
                 Holder::Body => Status::HeldByObstacle,
                 Holder::Constraint => Status::HeldByConstraint,
             },
-            last if self.torques.as_ref().is_some_and(|torques| torques.holds())
-                && (last.is_some_and(|last| value >= last) || self.arm.rests_at(&found.q)) =>
-            {
+            Some(last) if self.torques.as_ref().is_some_and(|torques| torques.holds(last, value, self.arm.dt)) => {
                 Status::HeldByTorque
             }
             _ if let Some(status) = self.arm.given_up(found) => status,

@@ -16,6 +16,10 @@ use crate::robot::Robot;
 /// Part of a torque limit that a milder stop would use.
 const MILD: f64 = 0.97;
 
+/// Part of a torque limit beyond which its gradient counts, and the step of its differences (rad, m).
+const CLOSE: f64 = 0.8;
+const DIFFERENCE: f64 = 1e-6;
+
 /// Certificate; owns its scratch.
 #[derive(Debug)]
 pub(super) struct StopTorques {
@@ -25,6 +29,8 @@ pub(super) struct StopTorques {
     /// Distances from parabolas over an interval of one tick to either side.
     rests: Vec<Rest>,
     ends: Vec<usize>,
+    /// Gradients (n, n) of the torques that hold the arm.
+    gradients: Vec<f64>,
     /// Torques without friction at the last tick beyond a limit.
     beyond: Point,
 }
@@ -70,7 +76,8 @@ impl StopTorques {
         let Some(torques) = JointTorques::new(robot, limits.torque(), "track")? else { return Ok(None) };
         let (n, point, bend) = (torques.dof(), torques.point(), torques.bend_scratch());
         let (rests, ends, beyond) = (vec![[0.0; 3]; n], Vec::with_capacity(3 * n), Point::from_elem(0.0, n));
-        Ok(Some(Self { torques, point, bend, rests, ends, beyond }))
+        let gradients = vec![0.0; n * n];
+        Ok(Some(Self { torques, point, bend, rests, ends, gradients, beyond }))
     }
 
     /// The joint that can hold the arm at rest at `q` the least, if one cannot.
@@ -113,6 +120,54 @@ impl StopTorques {
             first = last + 1;
         }
         Ok(largest)
+    }
+
+    /// Largest used part of a limit in the command `q` and, at the ends of its phases, the stop after it.
+    pub fn largest(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
+        let stop = context.stop_after(q);
+        let motion = Motion { ticks: &stop, command: q, dt: context.dt, bends: false };
+        stop.write_phase_ends(&mut self.ends);
+        let ends = std::mem::take(&mut self.ends);
+        let ticks = [0].into_iter().chain(ends.iter().flat_map(|end| [*end, *end + 1]));
+        let largest = ticks.map(|tick| self.share_at(&motion, tick)).fold(0.0, f64::max);
+        self.ends = ends;
+        largest
+    }
+
+    fn share_at(&mut self, motion: &Motion<'_>, tick: usize) -> f64 {
+        let node = self.node(motion, tick);
+        self.share(&node)
+    }
+
+    /// Calls `take` for each joint that holds the arm at rest at `q` with most of its limit: how far its torque is beyond a part of the limit,
+    /// and the gradient (n,) of its size.
+    pub fn each_hold(&mut self, q: &[f64], mut take: impl FnMut(f64, &[f64])) {
+        let n = q.len();
+        let mut hold = Point::from_elem(0.0, n);
+        self.write_hold(q, &mut hold);
+        self.gradients.resize(n * n, 0.0);
+        let (mut near, mut there) = (Point::from_slice(q), hold.clone());
+        for k in 0..n {
+            near[k] = q[k] + DIFFERENCE;
+            self.write_hold(&near, &mut there);
+            near[k] = q[k];
+            for j in 0..n {
+                self.gradients[j * n + k] = (there[j] - hold[j]) * hold[j].signum() / DIFFERENCE;
+            }
+        }
+        for (j, limit) in self.torques.limits().iter().enumerate() {
+            if hold[j].abs() > CLOSE * limit {
+                take(hold[j].abs() - MILD * limit, &self.gradients[j * n..(j + 1) * n]);
+            }
+        }
+    }
+
+    fn write_hold(&mut self, q: &[f64], hold: &mut [f64]) {
+        let at = &mut self.point;
+        at.q.copy_from_slice(q);
+        at.first.fill(0.0);
+        at.second.fill(0.0);
+        self.torques.write_torques(at, hold);
     }
 
     /// Part of the way from the command `brake` to the one with the torques last found beyond a limit, `tick` ticks after it, on which all

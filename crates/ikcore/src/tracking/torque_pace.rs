@@ -2,19 +2,24 @@
 //!
 //! A stop brakes with a part of the acceleration limits, the same for all joints: what the motors can give there. A command that is not
 //! certified is tried with a milder stop, or moved towards the command that brakes, which was certified with the command before. Where there
-//! is room, the stop becomes harder again.
+//! is room, the stop becomes harder again. Where the joints could not hold the arm at rest after a command, it is led aside first.
 
-use super::around_arm::require_constant;
+use super::around_arm::{Response, require_constant};
+use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
 use super::safety_filter::SafetyFilter;
+use super::step_context::StepContext;
 use super::stop_torques::{Overload, StopTorques};
 use super::tip_pace::TipPace;
 use super::tracked_arm::TrackedArm;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
-use crate::math::vector::write_within;
+use crate::math::MAX_DOF;
+use crate::math::row_step::{Row, SOFTNESS};
+use crate::math::vector::{dot, write_within};
 use crate::message::{Setting, message};
 use crate::objective::Point;
 use crate::robot::{JointKind, Robot};
+use crate::task::Aims;
 use crate::wording::number;
 
 /// Commands tried in a tick beside the one asked for.
@@ -24,8 +29,9 @@ const TRIES: usize = 4;
 const LEAST_PART: f64 = 0.05;
 const HARDER: f64 = 1.25;
 
-/// Used part of the torque limits below which a harder stop is tried.
+/// Used part of the torque limits below which a harder stop is tried in each tick, and the ticks after which it is tried anyway.
 const AMPLE: f64 = 0.75;
+const NOW_AND_THEN: usize = 8;
 
 /// Part of a command below which the arm rather brakes.
 const SHORTEST: f64 = 0.02;
@@ -33,11 +39,24 @@ const SHORTEST: f64 = 0.02;
 /// Parts of the acceleration limits tried by an arm whose stop is no longer certified.
 const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
 
+/// Ratio of the torques of two stops that are not certified below which the milder one is taken.
+const CLEARLY_LESS: f64 = 0.97;
+
+/// Part of a command above which a torque limit only slows it.
+const SLOWED: f64 = 0.1;
+
+/// Time for which a limit counts as what holds the arm (s), and the largest decrease of the error of an arm that is held, per second.
+const HELD: f64 = 0.1;
+const CREEPING: f64 = 0.05;
+
 /// Torque limits of an arm, and what of them holds it back.
 #[derive(Debug)]
 pub(super) struct TorquePace {
     stop: StopTorques,
+    rows: ConstrainedStep,
     held_by: Option<Overload>,
+    /// Time since it last changed a command (s).
+    free_for: f64,
     /// Whether the stop after the last command is certified. A payload that changes in the hand ends that.
     certified: bool,
 }
@@ -70,7 +89,8 @@ impl TorquePace {
             "tracking with torque limits",
             "limits that vary can ask for more torque than there is; give numbers",
         )?;
-        Ok(Some(Box::new(Self { stop, held_by: None, certified: true })))
+        let rows = ConstrainedStep::with_room(limits.dof(), limits.dof());
+        Ok(Some(Box::new(Self { stop, rows, held_by: None, free_for: 0.0, certified: true })))
     }
 
     /// Checks that the joints can hold the arm at `q`, the argument `what`.
@@ -111,9 +131,14 @@ impl TorquePace {
         self.held_by.as_ref().map(|overload| overload.in_words(verb, robot))
     }
 
-    /// Whether a limit holds the arm back.
-    pub fn holds(&self) -> bool {
-        self.held_by.is_some()
+    /// Whether a limit holds an arm back whose squared error was `last` in the tick before and is `value` after one of `dt` (s).
+    pub fn holds(&self, last: f64, value: f64, dt: f64) -> bool {
+        self.held_by.is_some() && value >= last * (1.0 - 2.0 * CREEPING * dt)
+    }
+
+    /// Whether the joints can hold the arm at `q`.
+    pub fn can_hold(&mut self, q: &[f64]) -> bool {
+        self.stop.too_heavy(q).is_none()
     }
 
     /// Changes the command `q`, which `others` allow, to one that keeps the limits with the stop after it; a `settled` arm is held by what held
@@ -122,28 +147,42 @@ impl TorquePace {
         match self.stop.check(&arm.context(), q) {
             Ok(used) => {
                 self.certified = true;
-                if !settled {
+                self.free_for += arm.dt;
+                if !settled && self.free_for > HELD {
                     self.held_by = None;
                 }
-                if used < AMPLE && arm.braking_part() < 1.0 {
+                if arm.braking_part() < 1.0 && (used < AMPLE || arm.ticks.is_multiple_of(NOW_AND_THEN)) {
                     self.stop_harder(arm, &mut others, q);
                 }
                 false
             }
             Err(overload) => {
-                self.held_by = Some(overload);
                 let wanted = q.clone();
-                self.shorten(arm, &mut others, overload, q);
+                let part = self.replace(arm, &mut others, overload, q);
+                if overload.is_at_rest || part < SLOWED {
+                    (self.held_by, self.free_for) = (self.held_by.filter(|_| !self.certified).or(Some(overload)), 0.0);
+                }
                 *q != wanted
             }
         }
     }
 
-    /// Replaces the command `q`, of which a torque is beyond its limit.
-    fn shorten(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, overload: Overload, q: &mut Point) {
+    /// Replaces the command `q`, of which a torque is beyond its limit, by one that is certified or the one that brakes. Returns the part of the
+    /// command that is left.
+    fn replace(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, overload: Overload, q: &mut Point) -> f64 {
         let stop_part = arm.braking_part();
-        let (brake, wanted) = (arm.context().braking(), q.clone());
         let (mut part, mut failed) = (1.0, Some(overload));
+        if overload.is_at_rest {
+            self.lead_aside(&arm.context(), q);
+            failed = match self.check(arm, others, q) {
+                Ok(()) => {
+                    self.certified = true;
+                    return part;
+                }
+                Err(found) => found,
+            };
+        }
+        let (brake, wanted) = (arm.context().braking(), q.clone());
         for _ in 0..TRIES {
             let milder = failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
             match failed {
@@ -158,7 +197,7 @@ impl TorquePace {
             failed = match self.check(arm, others, q) {
                 Ok(()) => {
                     self.certified = true;
-                    return;
+                    return part;
                 }
                 Err(found) => found,
             };
@@ -168,21 +207,49 @@ impl TorquePace {
         if !self.certified {
             self.stop_somehow(arm, others, q);
         }
+        0.0
     }
 
-    /// Finds a stop for an arm that has none: the hardest that is certified or, failing that, the one of before.
+    /// Moves the command `q` to the nearest one, by its effect on the task, after which joints can hold the arm at rest, to first order.
+    fn lead_aside(&mut self, context: &StepContext<'_>, q: &mut Point) {
+        let (rest, start) = (context.stop_after(q).rest(), q.clone());
+        let slope = Response::new(context, &rest).slope;
+        let rows = &mut self.rows.rows;
+        rows.clear();
+        self.stop.each_hold(&rest, |beyond, gradient| {
+            let mut row = Row { gradient: [0.0; MAX_DOF], least: beyond, softness: SOFTNESS };
+            (0..q.len()).for_each(|j| row.gradient[j] = -gradient[j] * slope[j]);
+            row.least += dot(&row.gradient[..q.len()], q);
+            rows.push(row);
+        });
+        let aims = if context.robot.tip_count() > 1 { context.aims } else { Aims::default() };
+        self.rows.write(&StepRequest { aims, ..context.request(Towards::Start) }, &start, q);
+    }
+
+    /// Finds a stop for an arm that has none: the hardest that is certified or, failing that, the one that asks for clearly the least torque.
     fn stop_somehow(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &mut Point) {
-        let before = arm.braking_part();
+        let (before, mut least) = (arm.braking_part(), None);
         for part in OTHER_PARTS {
             arm.set_braking_part(part);
             let brake = arm.context().braking();
-            if self.check(arm, others, &brake).is_ok() {
-                self.certified = true;
-                q.copy_from_slice(&brake);
-                return;
+            match self.check(arm, others, &brake) {
+                Ok(()) => {
+                    self.certified = true;
+                    q.copy_from_slice(&brake);
+                    return;
+                }
+                Err(Some(overload)) if others.allow(&arm.context(), &brake) => {
+                    let used = self.stop.largest(&arm.context(), &brake);
+                    if least.is_none_or(|(_, least, _)| used < CLEARLY_LESS * least) {
+                        least = Some((part, used, overload));
+                    }
+                }
+                Err(_) => {}
             }
         }
-        arm.set_braking_part(before);
+        arm.set_braking_part(least.map_or(before, |(part, ..)| part));
+        q.copy_from_slice(&arm.context().braking());
+        self.held_by = least.map(|(.., overload)| overload);
     }
 
     /// Makes the stop after the command `q` harder, if that is certified too.
@@ -206,9 +273,15 @@ impl TorquePace {
             return Err(None);
         }
         self.stop.check(&context, q).map_err(Some)?;
-        let is_slow = others.pace.as_mut().is_none_or(|pace| pace.allows(&context, q));
-        let is_clear = || others.safety.as_mut().is_none_or(|safety| safety.allows_command(&context, q));
-        if is_slow && { is_clear }() { Ok(()) } else { Err(None) }
+        if others.allow(&context, q) { Ok(()) } else { Err(None) }
+    }
+}
+
+impl OtherLimits<'_> {
+    /// Whether the command `q` and the stop after it satisfy all others.
+    fn allow(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        self.pace.as_mut().is_none_or(|pace| pace.allows(context, q))
+            && self.safety.as_mut().is_none_or(|safety| safety.allows_command(context, q))
     }
 }
 
