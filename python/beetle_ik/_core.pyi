@@ -839,6 +839,7 @@ class Status(IntEnum):
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
     LEVEL_GIVEN_UP = 19
+    HELD_BY_TORQUE = 20
 
 @final
 class APPS:
@@ -3096,6 +3097,9 @@ class Tracker:
         """Time step (s)."""
     @property
     def robot(self) -> Robot:
+        """The robot."""
+    @robot.setter
+    def robot(self, value: Robot) -> None:
         """The robot."""
     @property
     def limits(self) -> Limits:

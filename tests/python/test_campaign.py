@@ -170,7 +170,8 @@ SPOILED = {
         "a tip is beyond its limit",
     ),
     "tracked_torques": (
-        "q = np.array(commands)\ncommands = list(q[:1] + 1e3 * (q - q[:1]))\nstatuses = [bik.Status.SOLVED] * len(statuses)",
+        "q = np.array(commands)\ncommands = list(q[:1] + 1e3 * (q - q[:1]))\n"
+        "statuses = [bik.Status.SOLVED] * len(statuses)",
         "a torque is beyond its limit",
     ),
     "kept_motions": (

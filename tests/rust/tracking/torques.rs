@@ -86,6 +86,15 @@ fn jumped(robot: &Robot, rng: &mut LazyRng) -> Target {
     Target::from(&robot.fk(&q).unwrap())
 }
 
+/// Takes steps towards one target; returns the last status.
+fn follow(session: &mut Session, target: &Target, ticks: usize) -> Status {
+    let mut status = Status::Capped;
+    for _ in 0..ticks {
+        status = session.step(target, &mut Unattended).unwrap().status;
+    }
+    status
+}
+
 /// Follows targets that jump, with stops. Returns statuses.
 fn live(session: &mut Session, judge: &mut Judge, rng: &mut LazyRng, ticks: usize) -> Vec<Status> {
     let robot = session.robot().clone();
@@ -190,12 +199,11 @@ fn an_arm_stops_before_what_a_joint_cannot_hold() {
     }
     assert!(judge.worst <= 1e-9, "{}", judge.worst);
     assert!(statuses[1500..].iter().all(|status| *status == Status::HeldByTorque), "{:?}", &statuses[1990..]);
-    assert!(session.qd().iter().all(|rate| rate.abs() < 1e-3), "{:?}", session.qd());
+    assert!(session.qd().iter().all(|rate| rate.abs() < 0.1), "{:?}", session.qd());
     let words = session.held_by_torque().unwrap();
     assert!(words.contains("joint 'panda_joint2' would need") && words.contains("its limit is"), "{words}");
     let home = Target::from(&robot.fk(&START).unwrap());
-    let last = (0..1500).map(|_| session.step(&home, &mut Unattended).unwrap().status).last();
-    assert_eq!(last, Some(Status::Solved));
+    assert_eq!(follow(&mut session, &home, 1500), Status::Solved);
 }
 
 #[test]
@@ -205,7 +213,7 @@ fn a_payload_may_change_in_the_hand() {
     for mass in [0.5, 1.0, 3.0, 0.0, 2.0] {
         let mut session = session(&empty, 0.002, limits(&empty, None, motors(&empty, 0.6)));
         let target = jumped(&empty, &mut rng);
-        (0..60).for_each(|_| drop(session.step(&target, &mut Unattended).unwrap()));
+        follow(&mut session, &target, 60);
         let heavier = carrying(&empty, mass);
         session.set_robot(&heavier).unwrap();
         let mut judge = Judge::of(&session, &heavier);
@@ -227,7 +235,7 @@ fn more_than_the_joints_can_hold_is_said_until_it_is_gone() {
     let empty = panda(0.0);
     let mut session = session(&empty, 0.004, limits(&empty, None, motors(&empty, 0.6)));
     let target = Target::from(&empty.fk(&[0.4, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8]).unwrap());
-    (0..30).for_each(|_| drop(session.step(&target, &mut Unattended).unwrap()));
+    follow(&mut session, &target, 30);
     session.set_robot(&carrying(&empty, 20.0)).unwrap();
     for _ in 0..500 {
         assert_eq!(session.step(&target, &mut Unattended).unwrap().status, Status::HeldByTorque);
@@ -236,8 +244,7 @@ fn more_than_the_joints_can_hold_is_said_until_it_is_gone() {
     let words = session.held_by_torque().unwrap();
     assert!(words.contains(" needs ") && words.contains("to hold the arm"), "{words}");
     session.set_robot(&empty).unwrap();
-    let last = (0..800).map(|_| session.step(&target, &mut Unattended).unwrap().status).last();
-    assert_eq!(last, Some(Status::Solved));
+    assert_eq!(follow(&mut session, &target, 800), Status::Solved);
 }
 
 #[test]
@@ -323,7 +330,9 @@ fn a_track_keeps_torques() {
     let record = track(&robot, &path, Some(&START), &options, &mut Unattended).unwrap();
     let session = Session::new(&robot, &START, 0.01, &options).unwrap();
     let mut judge = Judge::of(&session, &robot);
-    record.q.chunks_exact(7).skip(1).for_each(|q| drop(judge.note(q)));
+    for q in record.q.chunks_exact(7).skip(1) {
+        judge.note(q);
+    }
     assert!(judge.worst <= 1e-9 && judge.worst > -2.0, "{}", judge.worst);
 }
 
@@ -338,8 +347,8 @@ fn what_cannot_be_kept_is_refused_by_name() {
     assert!(error.to_string().contains("joint 'panda_joint1' may change its velocity at once"), "{error}");
     let weak = limits(&robot, None, vec![1.0; 7]);
     let error = refused(&robot, weak);
-    assert!(matches!(error, Error::Unreachable { .. }), "{error}");
-    assert!(error.to_string().contains("joint 'panda_joint2' needs"), "{error}");
+    assert!(matches!(error, Error::Contradiction { .. }), "{error}");
+    assert!(error.to_string().starts_with("at start joint 'panda_joint4' needs "), "{error}");
     let mut session = session(&robot, 0.01, limits(&robot, None, motors(&robot, 1.0)));
     let error = session.set_robot(&Robot::named("ur5e").unwrap()).unwrap_err();
     assert!(matches!(error, Error::Contradiction { .. }), "{error}");
@@ -348,4 +357,30 @@ fn what_cannot_be_kept_is_refused_by_name() {
     let path = Reference::new(0.01, vec![pose_of(&robot, &START); 5], None).unwrap();
     let error = track(&robot, &path, Some(&START), &ease, &mut Unattended).unwrap_err();
     assert!(error.to_string().contains("does not keep torque limits"), "{error}");
+}
+
+#[test]
+fn milder_stops_end_inside_the_position_limits() {
+    let robot = panda(3.0);
+    let mut rng = rng::stream(86, 0);
+    let around = |j: usize, side: f64| Profile::Constant(START[j] + side * 0.25);
+    let mut limits = limits(&robot, None, motors(&robot, 0.5));
+    for (field, side) in [(Field::Lower, -1.0), (Field::Upper, 1.0)] {
+        limits = limits.replace(field, (0..7).map(|j| around(j, side)).collect()).unwrap();
+    }
+    let mut session = session(&robot, 0.002, limits);
+    let mut judge = Judge::of(&session, &robot);
+    for _ in 0..20 {
+        let target = jumped(&robot, &mut rng);
+        for _ in 0..60 {
+            let step = session.step(&target, &mut Unattended).unwrap();
+            judge.note(session.q());
+            let farthest = session.q().iter().zip(START).map(|(q, start)| (q - start).abs()).fold(0.0, f64::max);
+            assert!(step.inside_limits && farthest <= 0.25 + 1e-12, "{farthest}");
+        }
+        if rng.below(2) == 0 {
+            stop(&mut session, &mut judge);
+        }
+    }
+    assert!(judge.worst <= 1e-9, "{}", judge.worst);
 }

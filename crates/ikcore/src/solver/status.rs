@@ -99,7 +99,9 @@ impl Status {
             Self::HeldByConstraint => {
                 "move the target to where everything can be kept, or widen a tolerance of what is kept"
             }
-            Self::HeldByTorque => "move the target to where the joints can hold the arm, lighten the payload, or raise the torque limit",
+            Self::HeldByTorque => {
+                "move the target to where the joints can hold the arm, lighten the payload, or raise the torque limit"
+            }
             Self::RotationGivenUp => {
                 "turn the target, give the rotation a tolerance, or take a task that leaves it free, such as Position or Pointing"
             }

@@ -71,7 +71,7 @@ impl Session {
         options.rule.validate()?;
         options.rule.validate_for(robot, dt)?;
         options.check_goals(robot)?;
-        let arm = TrackedArm::new(robot, start, dt, options)?;
+        let mut arm = TrackedArm::new(robot, start, dt, options)?;
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| arm.limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &arm.robot, &ranges);
@@ -82,7 +82,10 @@ impl Session {
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, kept, &arm.limits)?)) } else { None };
         let pace = TipPace::new(robot, &arm.limits)?;
         let mut torques = TorquePace::new(robot, &arm.limits)?;
-        torques.as_mut().map_or(Ok(()), |torques| torques.require_held("start", &arm.q, robot))?;
+        if let Some(torques) = &mut torques {
+            torques.require_held("start", &arm.q, robot)?;
+            arm.set_braking_part(1.0); // prepares the limits of milder stops
+        }
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
         let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
@@ -91,7 +94,21 @@ impl Session {
         });
         let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
         let stopping = false;
-        Ok(Self { arm, rule, running, goals, surroundings, safety, pace, torques, way_back, settling, stopping, seed, rng })
+        Ok(Self {
+            arm,
+            rule,
+            running,
+            goals,
+            surroundings,
+            safety,
+            pace,
+            torques,
+            way_back,
+            settling,
+            stopping,
+            seed,
+            rng,
+        })
     }
 
     /// Accepted configuration (n,).
@@ -251,7 +268,11 @@ impl Session {
         }
         let away = self.way_back.as_ref().and_then(|way_back| way_back.away());
         let status = if status == Status::Improved && away.is_some_and(|away| away.way != Way::Taken) {
-            Status::Capped
+            if self.torques.as_ref().is_some_and(|torques| torques.holds_lately()) {
+                Status::HeldByTorque
+            } else {
+                Status::Capped
+            }
         } else {
             status
         };
@@ -275,8 +296,9 @@ impl Session {
             _ => return Ok(()),
         };
         if self.arm.tasks.with(&arrival.targets).has_pairs() {
-            let problem =
-                format!("{unkept} are not kept while one tip is held in the frame of another: leave one of the two out");
+            let problem = format!(
+                "{unkept} are not kept while one tip is held in the frame of another: leave one of the two out"
+            );
             return Err(Error::Contradiction { problem: problem.into() });
         }
         Ok(())

@@ -39,8 +39,9 @@ const SHORTEST: f64 = 0.02;
 /// Parts of the acceleration limits tried by an arm whose stop is no longer certified.
 const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
 
-/// Ratio of the torques of two stops that are not certified below which the milder one is taken.
+/// Ratio of the torques of two stops that are not certified below which the milder one is taken, and the mildest of these.
 const CLEARLY_LESS: f64 = 0.97;
+const MILDEST: f64 = 0.25;
 
 /// Part of a command above which a torque limit only slows it.
 const SLOWED: f64 = 0.1;
@@ -79,7 +80,10 @@ impl TorquePace {
         let is_free = |j: usize| accelerations.get(j).is_none_or(|limit| limit.at(0.0) == f64::INFINITY);
         if let Some(joint) = (0..limits.dof()).find(|j| is_free(*j)) {
             let remedy = message![
-                format!("joint '{}' may change its velocity at once, which takes any torque: give ", limits.joint_name(joint)),
+                format!(
+                    "joint '{}' may change its velocity at once, which takes any torque: give ",
+                    limits.joint_name(joint)
+                ),
                 Setting::Limit("acceleration"),
             ];
             return Err(Error::UnsupportedLimit { field: "torque".into(), method: "track".into(), remedy });
@@ -96,10 +100,13 @@ impl TorquePace {
     /// Checks that the joints can hold the arm at `q`, the argument `what`.
     ///
     /// # Errors
-    /// [`Error::Unreachable`] names joint, torque and limit.
+    /// [`Error::Contradiction`] names joint, torque and limit.
     pub fn require_held(&mut self, what: &str, q: &[f64], robot: &Robot) -> Result<()> {
         self.stop.too_heavy(q).map_or(Ok(()), |overload| {
-            Err(Error::Unreachable { what: what.into(), problem: overload.in_words("needs", robot).into() })
+            let needed = overload.in_words("needs", robot);
+            let problem =
+                format!("at {what} {needed}: begin elsewhere, lighten the payload, or raise the torque limit");
+            Err(Error::Contradiction { problem: problem.into() })
         })
     }
 
@@ -133,7 +140,12 @@ impl TorquePace {
 
     /// Whether a limit holds an arm back whose squared error was `last` in the tick before and is `value` after one of `dt` (s).
     pub fn holds(&self, last: f64, value: f64, dt: f64) -> bool {
-        self.held_by.is_some() && value >= last * (1.0 - 2.0 * CREEPING * dt)
+        self.holds_lately() && value >= last * (1.0 - 2.0 * CREEPING * dt)
+    }
+
+    /// Whether a limit has held the arm back a moment ago.
+    pub fn holds_lately(&self) -> bool {
+        self.held_by.is_some()
     }
 
     /// Whether the joints can hold the arm at `q`.
@@ -144,7 +156,7 @@ impl TorquePace {
     /// Changes the command `q`, which `others` allow, to one that keeps the limits with the stop after it; a `settled` arm is held by what held
     /// it before. Returns whether it did.
     pub fn keep(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>, settled: bool, q: &mut Point) -> bool {
-        match self.stop.check(&arm.context(), q) {
+        match self.within(arm, q) {
             Ok(used) => {
                 self.certified = true;
                 self.free_for += arm.dt;
@@ -156,10 +168,10 @@ impl TorquePace {
                 }
                 false
             }
-            Err(overload) => {
+            Err(failed) => {
                 let wanted = q.clone();
-                let part = self.replace(arm, &mut others, overload, q);
-                if overload.is_at_rest || part < SLOWED {
+                let part = self.replace(arm, &mut others, failed, q);
+                if let Some(overload) = failed.filter(|overload| overload.is_at_rest || part < SLOWED) {
                     (self.held_by, self.free_for) = (self.held_by.filter(|_| !self.certified).or(Some(overload)), 0.0);
                 }
                 *q != wanted
@@ -167,12 +179,16 @@ impl TorquePace {
         }
     }
 
-    /// Replaces the command `q`, of which a torque is beyond its limit, by one that is certified or the one that brakes. Returns the part of the
-    /// command that is left.
-    fn replace(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, overload: Overload, q: &mut Point) -> f64 {
-        let stop_part = arm.braking_part();
-        let (mut part, mut failed) = (1.0, Some(overload));
-        if overload.is_at_rest {
+    /// Replaces the command `q`, which `failed`, by one that is certified or the one that brakes. Returns the part of the command that is left.
+    fn replace(
+        &mut self,
+        arm: &mut TrackedArm,
+        others: &mut OtherLimits<'_>,
+        mut failed: Option<Overload>,
+        q: &mut Point,
+    ) -> f64 {
+        let (mut part, stop_part) = (1.0, arm.braking_part());
+        if failed.is_some_and(|overload| overload.is_at_rest) {
             self.lead_aside(&arm.context(), q);
             failed = match self.check(arm, others, q) {
                 Ok(()) => {
@@ -184,7 +200,8 @@ impl TorquePace {
         }
         let (brake, wanted) = (arm.context().braking(), q.clone());
         for _ in 0..TRIES {
-            let milder = failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
+            let milder =
+                failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
             match failed {
                 Some(_) if milder >= LEAST_PART => arm.set_braking_part(milder),
                 Some(found) => part *= self.stop.part_within(&arm.context(), &brake, found.tick),
@@ -238,7 +255,7 @@ impl TorquePace {
                     q.copy_from_slice(&brake);
                     return;
                 }
-                Err(Some(overload)) if others.allow(&arm.context(), &brake) => {
+                Err(Some(overload)) if part >= MILDEST && others.allow(&arm.context(), &brake) => {
                     let used = self.stop.largest(&arm.context(), &brake);
                     if least.is_none_or(|(_, least, _)| used < CLEARLY_LESS * least) {
                         least = Some((part, used, overload));
@@ -268,12 +285,18 @@ impl TorquePace {
         others: &mut OtherLimits<'_>,
         q: &[f64],
     ) -> std::result::Result<(), Option<Overload>> {
-        let context = arm.context();
-        if !arm.limited.as_ref().is_none_or(|limited| limited.stops_inside(&arm.q, q, &arm.tick_box)) {
-            return Err(None);
+        self.within(arm, q)?;
+        if others.allow(&arm.context(), q) { Ok(()) } else { Err(None) }
+    }
+
+    /// Checks torques, and the position limits of a stop that does not brake with the full acceleration. Returns the largest used part of a torque
+    /// limit in the stop.
+    fn within(&mut self, arm: &TrackedArm, q: &[f64]) -> std::result::Result<f64, Option<Overload>> {
+        if arm.limited.as_ref().is_none_or(|limited| limited.stops_inside(&arm.q, q, &arm.tick_box)) {
+            self.stop.check(&arm.context(), q).map_err(Some)
+        } else {
+            Err(None)
         }
-        self.stop.check(&context, q).map_err(Some)?;
-        if others.allow(&context, q) { Ok(()) } else { Err(None) }
     }
 }
 

@@ -46,7 +46,8 @@ use crate::units;
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
 ///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
-///         sample them.
+///         sample them. With `torque`, which needs acceleration limits, a command is sent only if it and the stop after it are within the
+///         torques at every tick, with what the arm carries; see `Tracker.robot`.
 ///     goals, joint_weights: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
 ///     rotation_tolerance: largest rotation error (rad); for several tips also a dict.

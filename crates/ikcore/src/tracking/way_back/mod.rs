@@ -27,8 +27,8 @@ use tried::{Tried, is_still};
 use super::away::{Away, Way};
 use super::progress::patience_factor;
 use super::safety_filter::SafetyFilter;
-use super::torque_pace::TorquePace;
 use super::step_context::StepContext;
+use super::torque_pace::TorquePace;
 use crate::limits::Limits;
 use crate::math::vector::{largest_difference, write_between};
 use crate::objective::{Bounds, Linearization, Point, Score};
@@ -299,12 +299,7 @@ impl WayBack {
     }
 
     /// Tries the candidates in their order, and takes the first that is clear.
-    fn choose(
-        &mut self,
-        (candidate, section): (usize, usize),
-        end: &mut EndOfTick<'_>,
-        mut lines: Lines<'_>,
-    ) -> Next {
+    fn choose(&mut self, (candidate, section): (usize, usize), end: &mut EndOfTick<'_>, mut lines: Lines<'_>) -> Next {
         let context = end.context;
         let Some(to) = self.search.found.get(candidate) else {
             self.stay(if candidate == 0 { Way::Unknown } else { Way::Blocked }, end, false);
