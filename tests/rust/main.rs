@@ -124,9 +124,9 @@ mod tracking {
     mod settling;
     mod streams;
     mod tips;
-    mod torques;
     mod track;
     mod way_back;
+    mod within_torques;
     mod work;
 }
 mod trajectory {

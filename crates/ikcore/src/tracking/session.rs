@@ -17,7 +17,7 @@ use super::tip_pace::TipPace;
 use super::torque_pace::{OtherLimits, TorquePace};
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
-use super::way_back::{EndOfTick, Lines, Next, WayBack};
+use super::way_back::{EndOfTick, Next, OpenLines, WayBack};
 use crate::constraint::{Keep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
@@ -346,7 +346,7 @@ impl Session {
         let Some(way_back) = self.way_back.as_mut().filter(|_| !self.stopping) else { return };
         let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
         let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
-        let lines = Lines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
+        let lines = OpenLines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
         let next = way_back.end_tick(end, lines);
         found.evaluations += way_back.evaluations();
         match next {

@@ -50,16 +50,16 @@ pub(super) struct Overload {
     pub easing: f64,
 }
 
-/// Torques without friction and velocities at a tick.
+/// Torques without friction, and velocities, at a tick.
 #[derive(Debug)]
-struct Node {
+struct TickTorques {
     torques: Point,
     rates: Point,
 }
 
-/// Motion in ticks of this length (s).
+/// A command and the stop after it, in ticks of this length (s).
 #[derive(Debug, Clone, Copy)]
-struct Motion<'a> {
+struct StoppedMotion<'a> {
     ticks: &'a CommandAndStop<'a>,
     command: &'a [f64],
     dt: f64,
@@ -83,7 +83,7 @@ impl StopTorques {
     /// The joint that can hold the arm at rest at `q` the least, if one cannot.
     pub fn too_heavy(&mut self, q: &[f64]) -> Option<Overload> {
         let hold = CommandAndStop::new(q, q, None);
-        let node = self.node(&Motion { ticks: &hold, command: q, dt: 1.0, bends: false }, 0);
+        let node = self.node(&StoppedMotion { ticks: &hold, command: q, dt: 1.0, bends: false }, 0);
         self.overload(&node, 0, 1.0 + TIGHT)
     }
 
@@ -94,7 +94,7 @@ impl StopTorques {
     pub fn check(&mut self, context: &StepContext<'_>, q: &[f64]) -> std::result::Result<f64, Overload> {
         let stop = context.stop_after(q);
         let bends = context.limited.is_some_and(|limited| limited.braking().iter().any(|b| b.jerk < f64::INFINITY));
-        let motion = Motion { ticks: &stop, command: q, dt: context.dt, bends };
+        let motion = StoppedMotion { ticks: &stop, command: q, dt: context.dt, bends };
         self.within(&motion, 0)?;
         let at_rest = self.within(&motion, (stop.ticks_to_stop() as usize).saturating_add(1))?;
         let mut largest = self.share(&at_rest);
@@ -125,7 +125,7 @@ impl StopTorques {
     /// Largest used part of a limit in the command `q` and, at the ends of its phases, the stop after it.
     pub fn largest(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
         let stop = context.stop_after(q);
-        let motion = Motion { ticks: &stop, command: q, dt: context.dt, bends: false };
+        let motion = StoppedMotion { ticks: &stop, command: q, dt: context.dt, bends: false };
         stop.write_phase_ends(&mut self.ends);
         let ends = std::mem::take(&mut self.ends);
         let ticks = [0].into_iter().chain(ends.iter().flat_map(|end| [*end, *end + 1]));
@@ -134,7 +134,7 @@ impl StopTorques {
         largest
     }
 
-    fn share_at(&mut self, motion: &Motion<'_>, tick: usize) -> f64 {
+    fn share_at(&mut self, motion: &StoppedMotion<'_>, tick: usize) -> f64 {
         let node = self.node(motion, tick);
         self.share(&node)
     }
@@ -174,7 +174,7 @@ impl StopTorques {
     /// are within their limits, by the line between the torques of both.
     pub fn part_within(&mut self, context: &StepContext<'_>, brake: &[f64], tick: usize) -> f64 {
         let stop = context.stop_after(brake);
-        let motion = Motion { ticks: &stop, command: brake, dt: context.dt, bends: false };
+        let motion = StoppedMotion { ticks: &stop, command: brake, dt: context.dt, bends: false };
         let node = self.node(&motion, tick);
         let beyond = std::mem::take(&mut self.beyond);
         let part = self.part_between(&node.torques, &beyond, &node.rates);
@@ -183,7 +183,7 @@ impl StopTorques {
     }
 
     /// The torques at a tick, which are within their limits.
-    fn within(&mut self, motion: &Motion<'_>, tick: usize) -> std::result::Result<Node, Overload> {
+    fn within(&mut self, motion: &StoppedMotion<'_>, tick: usize) -> std::result::Result<TickTorques, Overload> {
         let node = self.node(motion, tick);
         let Some(overload) = self.overload(&node, tick, 1.0 - TIGHT) else { return Ok(node) };
         let mut hold = Point::from_elem(0.0, node.torques.len());
@@ -197,9 +197,9 @@ impl StopTorques {
     /// Checks the ticks between two, which are within the limits.
     fn within_all(
         &mut self,
-        motion: &Motion<'_>,
+        motion: &StoppedMotion<'_>,
         [first, last]: [usize; 2],
-        [start, end]: [&Node; 2],
+        [start, end]: [&TickTorques; 2],
     ) -> std::result::Result<(), Overload> {
         if last - first < 2 {
             return Ok(());
@@ -214,7 +214,7 @@ impl StopTorques {
     }
 
     /// Whether torques over an interval of `half` ticks to either side of its middle are within their limits.
-    fn is_bounded(&self, motion: &Motion<'_>, [start, middle, end]: [&Node; 3], half: f64) -> bool {
+    fn is_bounded(&self, motion: &StoppedMotion<'_>, [start, middle, end]: [&TickTorques; 3], half: f64) -> bool {
         let cubed = half.powi(3);
         self.torques.limits().iter().enumerate().all(|(j, limit)| {
             let torques = control_points([start.torques[j], middle.torques[j], end.torques[j]]);
@@ -231,7 +231,7 @@ impl StopTorques {
     }
 
     /// Writes the rests of a stop.
-    fn bound(&mut self, context: &StepContext<'_>, motion: &Motion<'_>) {
+    fn bound(&mut self, context: &StepContext<'_>, motion: &StoppedMotion<'_>) {
         let Self { torques, bend, rests, .. } = self;
         let Some(limited) = context.limited else { return };
         let rate = |j: usize| {
@@ -249,9 +249,10 @@ impl StopTorques {
     }
 
     /// The torques and velocities at a tick after the command.
-    fn node(&mut self, motion: &Motion<'_>, tick: usize) -> Node {
+    fn node(&mut self, motion: &StoppedMotion<'_>, tick: usize) -> TickTorques {
         let (at, dt) = (&mut self.point, motion.dt);
-        let mut node = Node { torques: Point::from_slice(motion.command), rates: Point::from_slice(motion.command) };
+        let mut node =
+            TickTorques { torques: Point::from_slice(motion.command), rates: Point::from_slice(motion.command) };
         for (j, command) in motion.command.iter().enumerate() {
             let [before, last, now] = [2.0, 1.0, 0.0].map(|ago| motion.ticks.displacement(j, tick as f64 - ago));
             let (step, step_before) = (now - last, last - before);
@@ -263,7 +264,7 @@ impl StopTorques {
     }
 
     /// The torque farthest beyond this part of its limit.
-    fn overload(&self, node: &Node, tick: usize, part: f64) -> Option<Overload> {
+    fn overload(&self, node: &TickTorques, tick: usize, part: f64) -> Option<Overload> {
         let each = self.torques.limits().iter().enumerate();
         let beyond = each.map(|(joint, limit)| (joint, self.torque(node, joint), *limit));
         let (joint, torque, limit) = beyond
@@ -274,7 +275,7 @@ impl StopTorques {
     }
 
     /// The torque of a joint, with friction where it does not help.
-    fn torque(&self, node: &Node, joint: usize) -> f64 {
+    fn torque(&self, node: &TickTorques, joint: usize) -> f64 {
         let torque = node.torques[joint];
         let with_friction = torque + self.drag(node.rates[joint], joint);
         if with_friction.abs() > torque.abs() { with_friction } else { torque }
@@ -287,7 +288,7 @@ impl StopTorques {
     }
 
     /// The largest part of a limit that is in use.
-    fn share(&self, node: &Node) -> f64 {
+    fn share(&self, node: &TickTorques) -> f64 {
         let each = self.torques.limits().iter().enumerate();
         each.map(|(joint, limit)| self.torque(node, joint).abs() / limit).fold(0.0, f64::max)
     }

@@ -108,7 +108,7 @@ enum State {
 }
 
 /// What decides on lines of the joints.
-pub(super) struct Lines<'a> {
+pub(super) struct OpenLines<'a> {
     pub safety: Option<&'a mut SafetyFilter>,
     pub torques: Option<&'a mut TorquePace>,
 }
@@ -188,7 +188,7 @@ impl WayBack {
 
     /// Ends a tick. `lines` says which lines of the joints may be taken.
     #[inline]
-    pub fn end_tick(&mut self, end: EndOfTick<'_>, lines: Lines<'_>) -> Next {
+    pub fn end_tick(&mut self, end: EndOfTick<'_>, lines: OpenLines<'_>) -> Next {
         self.evaluations = 0;
         let error = if end.score.solved { 0.0 } else { end.score.value.sqrt() };
         if self.state == State::Following {
@@ -203,7 +203,7 @@ impl WayBack {
     }
 
     #[cold]
-    fn decide(&mut self, error: f64, mut end: EndOfTick<'_>, lines: Lines<'_>) -> Next {
+    fn decide(&mut self, error: f64, mut end: EndOfTick<'_>, lines: OpenLines<'_>) -> Next {
         match self.state {
             State::Returning => return self.check_return(&end),
             State::Following => self.doubt(error, &end),
@@ -299,7 +299,12 @@ impl WayBack {
     }
 
     /// Tries the candidates in their order, and takes the first that is clear.
-    fn choose(&mut self, (candidate, section): (usize, usize), end: &mut EndOfTick<'_>, mut lines: Lines<'_>) -> Next {
+    fn choose(
+        &mut self,
+        (candidate, section): (usize, usize),
+        end: &mut EndOfTick<'_>,
+        mut lines: OpenLines<'_>,
+    ) -> Next {
         let context = end.context;
         let Some(to) = self.search.found.get(candidate) else {
             self.stay(if candidate == 0 { Way::Unknown } else { Way::Blocked }, end, false);
@@ -381,7 +386,7 @@ fn is_resting(end: &EndOfTick<'_>) -> bool {
     steps.map(|((q, before), velocity)| (q - before).abs() - RESTING * dt * velocity.min(1.0)).all(|over| over <= 0.0)
 }
 
-impl Lines<'_> {
+impl OpenLines<'_> {
     fn are_limited(&self) -> bool {
         self.safety.is_some() || self.torques.is_some()
     }
