@@ -193,7 +193,7 @@ def test_wrong_calls_are_refused_by_name() -> None:
     ):
         bik.Tracker(PANDA, READY, dt=0.01, limits=bik.Limits(acceleration=RATED, torque=1.0))
     tracker = bik.Tracker(PANDA, READY, dt=0.01, limits=rated)
-    for other in (bik.Robot.named("ur5e"), PANDA.with_capsules(radius=0.05), PANDA.with_tool([0, 0, 0.1])):
+    for other in (bik.Robot.named("ur5e"), PANDA.with_capsules(radius=0.05), PANDA.with_tool(bik.pose([0, 0, 0.1]))):
         with pytest.raises(bik.InvalidInputError, match="differs from robot 'panda' in more than masses, payloads and"):
             tracker.robot = other
     for other in (None, "panda", 3):
@@ -202,7 +202,6 @@ def test_wrong_calls_are_refused_by_name() -> None:
     with pytest.raises(bik.InvalidInputError, match="mass"):
         tracker.robot = PANDA.with_payload(-1.0)
     assert tracker.robot == PANDA
+    path = bik.paths.from_samples([0.0, 1.0], np.tile(PANDA.fk(READY)[:3, 3], (2, 1)))
     with pytest.raises(bik.InvalidInputError, match=r"ease.* does not keep torque limits"):
-        bik.track(
-            PANDA, bik.Path.circle(PANDA.fk(READY)[:3, 3], 0.1, duration=2.0), READY, dt=0.01, limits=rated, ease=True
-        )
+        bik.track(PANDA, path, READY, dt=0.01, limits=rated, ease=True)
