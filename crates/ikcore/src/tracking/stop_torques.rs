@@ -6,7 +6,7 @@
 
 use super::command_and_stop::CommandAndStop;
 use super::step_context::StepContext;
-use crate::constraint::{BendScratch, JointTorques, Rest, TIGHT, TorquePoint, control_points};
+use crate::constraint::{BendScratch, HOLD_AND_SQUARE, JointTorques, Rest, TIGHT, TorquePoint, control_points};
 use crate::error::Result;
 use crate::limits::Limits;
 use crate::math::majorant::Majorant;
@@ -219,7 +219,7 @@ impl StopTorques {
         self.torques.limits().iter().enumerate().all(|(j, limit)| {
             let torques = control_points([start.torques[j], middle.torques[j], end.torques[j]]);
             let most = torques.into_iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
-            let [_, of_motion, of_hold] = self.rests[j];
+            let [of_hold, of_motion, _] = self.rests[j];
             let rest = cubed * (of_motion / (motion.dt * motion.dt) + of_hold);
             let rates = control_points([start.rates[j], middle.rates[j], end.rates[j]]);
             // A deceleration that bends is a parabola too.
@@ -245,7 +245,7 @@ impl StopTorques {
             Majorant::of([fastest + steepest, steepest, 0.5 * bend])
         };
         let farthest = |j: usize| motion.command[j].abs() + motion.ticks.range(j);
-        torques.rests(rate, farthest, bend, rests);
+        torques.rests::<HOLD_AND_SQUARE>(rate, farthest, bend, rests);
     }
 
     /// The torques and velocities at a tick after the command.
