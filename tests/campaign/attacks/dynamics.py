@@ -40,7 +40,7 @@ class Torques(Attack):
         joints = case["joints"]
         rates = np.array([joint["rates"] for joint in arms.free(joints)]).transpose(1, 2, 0)
         return (
-            f'robot = bik.Robot.fromurdf("""{urdf(case)}""", tip="l{len(joints)}")\n'
+            f'robot = bik.Robot.from_urdf("""{urdf(case)}""", tip="l{len(joints)}")\n'
             f"q = np.array({arms.configurations(joints).tolist()})\n"
             f"qd, qdd = np.array({rates[:, 0].tolist()}), np.array({rates[:, 1].tolist()})\n"
             "torques, masses, holding = robot.torques(q, qd, qdd), robot.mass_matrix(q), robot.torques(q)"
