@@ -817,6 +817,7 @@ class Status(IntEnum):
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
     - `LEVEL_GIVEN_UP`: The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.
+    - `HELD_BY_TORQUE`: A step of a track in which a torque limit holds the tip away from the target: a joint could not move or hold the arm farther on, or carries more than it can.
     """
 
     SOLVED = 0
@@ -839,6 +840,7 @@ class Status(IntEnum):
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
     LEVEL_GIVEN_UP = 19
+    HELD_BY_TORQUE = 20
 
 @final
 class APPS:
@@ -2979,7 +2981,8 @@ class Tracker:
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
-            sample them.
+            sample them. With `torque`, which needs acceleration limits, a command is sent only if it and the stop after it are within the
+            torques at every tick, with what the arm carries; see `Tracker.robot`.
         goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
@@ -3096,7 +3099,16 @@ class Tracker:
         """Time step (s)."""
     @property
     def robot(self) -> Robot:
-        """The robot."""
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
+    @robot.setter
+    def robot(self, value: Robot) -> None:
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
     @property
     def limits(self) -> Limits:
         """The limits in force."""
@@ -3112,6 +3124,7 @@ class Step:
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
         HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        HELD_BY_TORQUE if a torque limit does, or is exceeded by what the arm carries;
         LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
         IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """

@@ -25,7 +25,7 @@ class Torques(Attack):
         joints = arms.arm(random, hard, (1, 9))
         branch = arms.arm(random, hard, (0, 3)) if hard else []
         for joint in [*joints, *branch]:
-            joint["body"] = _body(random, hard)
+            joint["body"] = body(random, hard)
             joint["rub"] = tuple(map(float, random.choice([0.0, 0.0, 0.3, 1.0], 2)))
         arms.put(joints, random, hard, _STATES)
         for joint in joints:
@@ -33,14 +33,14 @@ class Torques(Attack):
                 arms.triple(random.choice([0.0, 0.0, 1.0, -1.0, random.normal()], 3)) for _ in range(_STATES)
             ]
         # The last link has a mass, so that no joint moves none.
-        joints[-1]["body"] = _body(random, False)
+        joints[-1]["body"] = body(random, False)
         return {"joints": joints, "branch": branch}
 
     def program(self, case: Case) -> str:
         joints = case["joints"]
         rates = np.array([joint["rates"] for joint in arms.free(joints)]).transpose(1, 2, 0)
         return (
-            f'robot = bik.Robot.from_urdf("""{_urdf(case)}""", tip="l{len(joints)}")\n'
+            f'robot = bik.Robot.from_urdf("""{urdf(case)}""", tip="l{len(joints)}")\n'
             f"q = np.array({arms.configurations(joints).tolist()})\n"
             f"qd, qdd = np.array({rates[:, 0].tolist()}), np.array({rates[:, 1].tolist()})\n"
             "torques, masses, holding = robot.torques(q, qd, qdd), robot.mass_matrix(q), robot.torques(q)"
@@ -50,7 +50,7 @@ class Torques(Attack):
         from dynamics_oracle import DynamicsOracle
 
         robot, q = left["robot"], left["q"]
-        pinocchio = DynamicsOracle(_urdf(case), robot)
+        pinocchio = DynamicsOracle(urdf(case), robot)
         size = 1.0 + sum(np.linalg.norm(joint["xyz"]) for joint in [*case["joints"], *case["branch"]])
         for i, row in enumerate(q):
             qd, qdd = left["qd"][i], left["qdd"][i]
@@ -67,7 +67,7 @@ class Torques(Attack):
         return len(q)
 
 
-def _body(random: np.random.Generator, hard: bool) -> tuple[float, Any, Any] | None:
+def body(random: np.random.Generator, hard: bool) -> tuple[float, Any, Any] | None:
     """Draws mass, centre and three arms of pairs of points; None for a link without mass."""
     if hard and random.random() < 0.3:
         return None
@@ -77,7 +77,7 @@ def _body(random: np.random.Generator, hard: bool) -> tuple[float, Any, Any] | N
     return mass, arms.triple(center), [arms.triple(point) for point in points]
 
 
-def _urdf(case: Case) -> str:
+def urdf(case: Case) -> str:
     joints, branch = case["joints"], case["branch"]
     text = arms.urdf(joints, branch)
     for name, side in (("l", joints), ("a", branch)):
