@@ -1657,7 +1657,7 @@ class Pointing(Task):
 @disjoint_base
 class Goal:
     """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
-    `LinkManipulability` or `Clearance`.
+    `LinkManipulability`, `Clearance` or `LeastTorque`.
     """
 
     @property
@@ -1730,6 +1730,23 @@ class Clearance(Goal):
     @property
     def up_to(self) -> float:
         """Distance beyond which a pair no longer counts (m)."""
+
+@final
+class LeastTorque(Goal):
+    """Holds the arm up with little torque: minimises the sum of (torque / scale)^2 over the joints, with the torques of `Robot.torques(q)`,
+    payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
+
+    Args:
+        relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+            of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
+            floating base has no motors, and never counts.
+        weight: weight relative to other goals.
+    """
+
+    def __new__(cls, *, relative_to: ArrayLike | None = None, weight: float = 1.0) -> LeastTorque: ...
+    @property
+    def relative_to(self) -> _Array | None:
+        """What the torque of each joint is compared with (n,) (N m, N); None: its torque limit."""
 
 # --- inverse kinematics -------------------------------------------------------------------------
 

@@ -11,12 +11,14 @@
 //! | `scratch`, `wide_vectors` | scratch memory and registers of the kernels |
 //! | `inverse` | recursive Newton-Euler algorithm: the torques of a motion |
 //! | `gravity` | torques that hold the bodies up, centre of mass |
+//! | `holding_slope` | derivatives of those torques |
 //! | `mass_matrix` | composite rigid body algorithm |
 //! | `forward` | accelerations that torques cause |
 //! | `rotation_vector_rate` | angular acceleration of a floating base |
 
 mod forward;
 mod gravity;
+mod holding_slope;
 mod inertia;
 mod inverse;
 mod mass_matrix;
