@@ -109,6 +109,58 @@ class CheapPostures(Attack):
         return len(left["qs"])
 
 
+class CentersOfMass(Attack):
+    name = "centers_of_mass"
+    promise = "A target of the centre of mass is met where it is said to be, by the errors that Pinocchio finds"
+    page = "several_tips"
+
+    def draw(self, random: np.random.Generator, hard: bool) -> Case:
+        shared = arms.easy_arm(random, 1)
+        left, right = (arms.easy_arm(random, int(random.integers(1 if hard else 3, 7))) for _ in range(2))
+        for joint in (*shared, *left, *right):
+            joint["body"], joint["rub"] = _body(random, hard), (0.0, 0.0)
+        for joints in (shared, left, right):
+            joints[-1]["body"] = _body(random, False)
+            arms.put(joints, random, hard)
+        weights = random.choice([1.0, 1.0, 0.0, 0.3], 3)
+        weights[2] = max(weights[2], float(not weights.any()))
+        return {
+            "joints": [*shared, *left],
+            "branch": right,
+            "offset": arms.triple(random.choice([0.0, 0.0, 0.1, 1.0, random.normal()], 3)),
+            "weights": arms.triple(weights),
+            "level": int(random.choice([0, 1])),
+            "begin": bool(random.random() < 0.5),
+        }
+
+    def program(self, case: Case) -> str:
+        tips = [f"l{len(case['joints'])}", f"a{len(case['branch'])}"]
+        q = np.concatenate([arms.configurations(joints)[0] for joints in (case["joints"], case["branch"])])
+        start = "q" if case["begin"] else "0.9 * q"
+        return (
+            f'robot = bik.Robot.from_urdf("""{_urdf(case)}""", tip={tips})\n'
+            f"q = robot.clip(np.array({q.tolist()}))\n"
+            f"center = robot.center_of_mass(q) + np.array({list(case['offset'])})\n"
+            f"task = {{'center_of_mass': bik.tasks.Position(weights={case['weights']}, level={case['level']})}}\n"
+            f"targets = {{{tips[0]!r}: robot.fk(q)[0, :3, 3], 'center_of_mass': center}}\n"
+            f"found = bik.solve(robot, targets, task=task, start=robot.clip({start}))"
+        )
+
+    def judge(self, case: Case, left: dict[str, Any]) -> int:
+        from dynamics_oracle import DynamicsOracle
+
+        found, robot, weights = left["found"], left["robot"], np.array(case["weights"])
+        away = DynamicsOracle(_urdf(case), robot).center_of_mass(found.q) - left["center"]
+        error = float(np.linalg.norm(away[weights > 0.0]))
+        if not abs(error - found.errors["center_of_mass"][0]) < 1e-8 * (1 + error):
+            raise BrokenError("the error of the centre differs", (error, found.errors["center_of_mass"][0]))
+        if found.success and not error < 1e-6 + 1e-8:
+            raise BrokenError("solved, but the centre is elsewhere", error)
+        if case["begin"] and not any(case["offset"]) and not found.success:
+            raise BrokenError("a start on its targets is left for no solution", found.message)
+        return 1
+
+
 def _body(random: np.random.Generator, hard: bool) -> tuple[float, Any, Any] | None:
     """Draws mass, centre and three arms of pairs of points; None for a link without mass."""
     if hard and random.random() < 0.3:
@@ -143,4 +195,4 @@ def _inertial(mass: float, center: Any, points: Any) -> str:
     return f"<inertial><origin xyz='{at}'/><mass value='{mass!r}'/><inertia {tensor}/></inertial>"
 
 
-ATTACKS = [Torques(), CheapPostures()]
+ATTACKS = [Torques(), CheapPostures(), CentersOfMass()]

@@ -5,7 +5,7 @@ use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;
-use crate::math::Frame;
+use crate::math::{Columns, Frame};
 use crate::math::arithmetic::NoFma;
 
 /// Motions (m, n) of a robot, row-major: where each joint is, how fast it moves, and how that changes.
@@ -111,15 +111,32 @@ impl Robot {
     /// As [`torques_all`](Self::torques_all).
     pub fn center_of_mass_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let dynamics = self.dynamics()?;
-        let mut scratch = self.dynamics_scratch(dynamics);
+        let mut frames = self.frame_buffer();
         let rows = self.rows(qs)?;
         let mut centers = Vec::with_capacity(3 * rows.len());
         for (row, q) in rows.enumerate() {
             checkpoint_at(row)?;
-            self.write_frames(q, &mut scratch.frames);
-            centers.extend(dynamics.center_of_mass(&mut scratch));
+            self.write_frames(q, &mut frames);
+            centers.extend(dynamics.center_of_mass_and_rates(&frames, &mut []));
         }
         Ok(centers)
+    }
+
+    /// A frame at the centre of mass in the axes of the base, and its Jacobian (n,), whose angular rows are zero. The robot has dynamics:
+    /// the base is the centre of one that has none.
+    pub(crate) fn center_of_mass_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        columns.fit(q.len());
+        columns[..q.len()].fill([0.0; 6]);
+        self.frame_at_center_of_mass(q, &mut columns[..q.len()])
+    }
+
+    /// A frame at the centre of mass in the axes of the base; adds the velocity of the centre to `columns`.
+    pub(crate) fn frame_at_center_of_mass(&self, q: &[f64], columns: &mut [[f64; 6]]) -> Frame {
+        let Ok(dynamics) = self.dynamics() else { return Frame::IDENTITY };
+        let mut frames = self.frame_buffer();
+        self.write_frames(q, &mut frames);
+        let origin = dynamics.center_of_mass_and_rates(&frames, columns);
+        Frame { origin, ..Frame::IDENTITY }
     }
 
     /// Checks that `values` has one complete and finite row for each of q, which has this length.
