@@ -86,7 +86,7 @@ def test_the_whole_centre_with_one_hand() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_higher_level_is_as_near_as_the_hands_allow(seed: int) -> None:
     q = draw(1, seed)[0]
-    target = {**hands(q), CENTER: PAIR.center_of_mass(q) + [1.0, -0.5, 0.0]}
+    target = {**hands(q), CENTER: PAIR.center_of_mass(q) + np.array([1.0, -0.5, 0.0])}
     found = bik.solve(PAIR, target, task={CENTER: Position(level=1)}, start=q)
     assert found.status is GIVEN_UP
     assert max(found.errors[tip][0] for tip in PAIR.tips) < 1e-6
@@ -111,7 +111,7 @@ def test_a_hand_gives_way_to_the_centre_of_a_lower_level() -> None:
 
 def test_within_a_tolerance_the_centre_is_met() -> None:
     q = draw(1, 5)[0]
-    target = {**hands(q), CENTER: PAIR.center_of_mass(q) + [0.02, 0.0, 5.0]}
+    target = {**hands(q), CENTER: PAIR.center_of_mass(q) + np.array([0.02, 0.0, 5.0])}
     found = bik.solve(PAIR, target, task={CENTER: Position(tolerance=(0.03, 0.03, np.inf))}, start=q)
     assert found.success
     assert abs(oracle().center_of_mass(found.q) - target[CENTER])[:2].max() <= 0.03 + 1e-9

@@ -41,7 +41,8 @@ def test_the_torque_falls_and_is_least_nearby(robot: bik.Robot) -> None:
         target = robot.fk(q)
         plain = bik.solve(robot, target, start=q)
         held = bik.solve(robot, target, start=q, goals=HOLD)
-        assert plain.success and held.success
+        assert plain.success
+        assert held.success
         assert np.allclose(robot.fk(held.q), target, atol=1e-5)
         before.append(effort(robot, plain.q, scale))
         after.append(effort(robot, held.q, scale))
@@ -137,7 +138,8 @@ def test_several_tips_take_it() -> None:
     scale = np.full(pair.dof, 50.0)
     goal = bik.goals.LeastTorque(relative_to=scale)
     plain, held = (bik.solve(pair, targets, start=q, goals=goals) for goals in (None, goal))
-    assert plain.success and held.success
+    assert plain.success
+    assert held.success
     assert effort(pair, held.q, scale) < effort(pair, plain.q, scale)
 
 
@@ -172,13 +174,13 @@ def solve(robot: bik.Robot, **options: Any) -> None:
         ),
         (
             lambda: solve(PANDA, relative_to=[1, 2, 3, 0, 5, 6, 7]),
-            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that does "
-            "not count, got 0",
+            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that "
+            "does not count, got 0",
         ),
         (
             lambda: solve(PANDA, relative_to=[1, 2, 3, np.nan, 5, 6, 7]),
-            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that does "
-            "not count, got NaN",
+            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that "
+            "does not count, got NaN",
         ),
         (
             lambda: solve(PANDA, relative_to=np.full(7, np.inf)),

@@ -83,7 +83,8 @@ def test_a_dragged_arm_shows_the_torques_of_its_motion() -> None:
 
 def test_playback_shows_the_torques_of_the_motion(viewer: bik.Viewer) -> None:
     limits = bik.Limits(acceleration=5.0)
-    plan = bik.plan_point_to_point(PANDA, start_q=START, end_q=START + [0.7, 0.4, 0, 0.3, 0, 0, 0], limits=limits)
+    there = START + np.array([0.7, 0.4, 0, 0.3, 0, 0, 0])
+    plan = bik.plan_point_to_point(PANDA, start_q=START, end_q=there, limits=limits)
     viewer.show(plan)
     parts = viewer._parts
     until(lambda: parts.playback._time > 0.2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _LEAST_MASS = 1e-9  # kg, kg m^2: MuJoCo moves no body without mass, and no point mass
-_SAME = 1e-6  # relative difference between the mass matrices of the simulated arm and of the robot; m, between their tips
+_SAME = 1e-6  # difference between the simulated arm and the robot: of mass matrices, relative; of tips (m)
 _SAMPLES = 3  # configurations at which they are compared
 
 
@@ -105,8 +105,8 @@ class TorquePlant:
     ) -> Followed:
         """Follows a motion from rest at its start, by computed torques with feedback.
 
-        The torques are those of the motion by `model`, plus its masses times w^2 (reference - q) + 2 w (their rate), with the
-        bandwidth w: without errors of the model the feedback has next to nothing to do.
+        The torques are those of the motion by `model`, plus its mass matrix times w^2 e + 2 w de/dt, where e is the
+        reference less q and w the bandwidth. Where the model is right, the feedback has next to nothing to do.
 
         Args:
             motion: a plan, or a trajectory of all joints.
@@ -129,7 +129,8 @@ class TorquePlant:
         for what, dof in (("motion", len(trajectory.joint_names)), ("model", known.dof)):
             if dof != self.robot.dof:
                 raise InvalidInputError(f"{what} has {dof} joints, and robot '{self.robot.name}' has {self.robot.dof}")
-        t = self.timestep * np.arange(int(np.ceil((trajectory.duration + hold) / self.timestep)) + 1)
+        steps = int(np.ceil((trajectory.duration + hold) / self.timestep))
+        t: Array = self.timestep * np.arange(steps + 1, dtype=np.float64)
         reference, rate, change = trajectory.at(np.minimum(t, trajectory.duration))
         rate[t > trajectory.duration] = change[t > trajectory.duration] = 0.0
         self.reset(reference[0])
@@ -140,7 +141,7 @@ class TorquePlant:
             self.step(known.torques(reference[i], rate[i], change[i] + correction))
             torques[i] = self._data.qfrc_applied
         places, wanted = (self.robot.fk(row)[:, :3, 3] for row in (q, reference))
-        return Followed(t, q, reference, torques, np.linalg.norm(places - wanted, axis=1))
+        return Followed(t, q, reference, torques, np.sqrt(np.sum((places - wanted) ** 2, axis=1)))
 
     def _row(self, what: str, values: ArrayLike) -> Array:
         row = np.asarray(values, dtype=float)
@@ -153,8 +154,8 @@ class TorquePlant:
     def _add_friction_and_rotors(self) -> None:
         """Gives the joints the friction and the rotors of the robot.
 
-        What MuJoCo has without them differs from the robot in the diagonal of the mass matrix alone; the check of that is the
-        check of all masses.
+        What MuJoCo has without them differs from the robot in the diagonal of the mass matrix alone, which checks all
+        masses.
         """
         n, robot = self.robot.dof, self.robot
         rotors = np.zeros(n)
@@ -168,14 +169,13 @@ class TorquePlant:
             away = np.linalg.norm(self._data.site_xpos[0] - robot.fk(q)[:3, 3])
             if off > _SAME or away > _SAME:
                 raise InvalidInputError(f"robot '{robot.name}' has mimic joints, which cannot be simulated")
-        zero, unit = np.zeros(n), np.eye(n)
         # Friction is what changes its sign with the velocity.
-        resisting = [
-            np.diag(robot.torques(np.tile(zero, (n, 1)), v * unit) - robot.torques(np.tile(zero, (n, 1)), -v * unit)) / 2
-            for v in (1.0, 2.0)
-        ]
-        damping = resisting[1] - resisting[0]
-        dry = resisting[0] - damping
+        places, speeds = np.zeros((n, n)), np.eye(n)
+        slow, fast = (
+            0.5 * np.diag(robot.torques(places, v * speeds) - robot.torques(places, -v * speeds)) for v in (1.0, 2.0)
+        )
+        damping = fast - slow
+        dry = slow - damping
         self._model.dof_armature[:] = np.where(rotors > _SAME * rotors.max(initial=0.0), rotors, 0.0)
         self._model.dof_damping[:] = np.maximum(damping, 0.0)
         self._model.dof_frictionloss[:] = np.where(dry > 1e-12, dry, 0.0)
@@ -193,9 +193,7 @@ def _description(robot: Robot, timestep: float) -> str:
     for i, (kind, axis, anchor) in enumerate(zip(kinds, axes, anchors, strict=True)):
         body = SubElement(body, "body", pos=exact(anchor - origin))
         origin = anchor
-        SubElement(
-            body, "joint", name=f"joint_{i}", type="slide" if kind == "prismatic" else "hinge", axis=exact(axis)
-        )
+        SubElement(body, "joint", name=f"joint_{i}", type="slide" if kind == "prismatic" else "hinge", axis=exact(axis))
         bodies.append(body)
     SubElement(body, "site", name="tip", pos=exact(tip - origin), size="0.01")
     zero = np.zeros(robot.dof)

@@ -35,7 +35,7 @@ def loads_in_html(arm: Arm) -> str | None:
         name = html.escape(robot.joint_names[most])
         return f"<span data-beetle-ik='load'>largest torque {abs(torques[most]):.1f} {_unit(arm, most)}, {name}</span>"
     shares = np.where(limited, np.abs(torques) / limits, 0.0)
-    bars = "".join(_bar(arm, j, torques[j], limits[j]) for j in np.flatnonzero(limited))
+    bars = "".join(_bar(arm, j, torques[j], limits[j]) for j in range(robot.dof) if limited[j])
     return f"<span data-beetle-ik='load'>{_largest(arm, shares)}</span><span style='display:flex;gap:4px'>{bars}</span>"
 
 

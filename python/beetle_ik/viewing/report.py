@@ -37,7 +37,7 @@ _WORDS = {
 
 
 class Report:
-    """Status, errors, clearance and the nearest two bodies, loads of the motors; errors of the page; gaps of the model."""
+    """Status, errors, clearance, loads of the motors; the nearest two bodies; errors of the page; gaps of the model."""
 
     def __init__(self, page: Page, notes: list[str]) -> None:
         """Adds the text, with `notes` below it."""
