@@ -127,7 +127,8 @@ STILL = bik.Trajectory.from_samples([0.0, 1.0], [START, START])
 MIMIC = RUBBED.replace('name="swing"', 'name="turn"', 1).replace(
     "</robot>",
     '<link name="end"/><joint name="follows" type="revolute"><parent link="hand"/><child link="end"/>'
-    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/><mimic joint="turn" multiplier="0.5"/></joint></robot>',
+    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>'
+    '<mimic joint="turn" multiplier="0.5"/></joint></robot>',
 )
 
 
