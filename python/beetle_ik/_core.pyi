@@ -1775,7 +1775,8 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
-            "right_tool") gives the pose of the second tip in the frame of the first.
+            "right_tool") gives the pose of the second tip in the frame of the first; "center_of_mass" the position (3,) (m)
+            of the centre of all masses.
         task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
             not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
@@ -3050,8 +3051,8 @@ class Tracker:
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
         with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-        ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-        is held there, with priority over all other targets.
+        ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+        all masses. A pair that has reached its target is held there, with priority over all other targets.
 
         Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
         jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at

@@ -83,9 +83,11 @@ fn torques_are_relative_to_the_rated_ones_by_default() {
 
 #[test]
 fn joints_without_rated_torques_count_alike() {
-    for (seed, robot) in robots().iter().enumerate().filter(|(_, robot)| {
-        robot.joints().iter().all(|joint| joint.rated_torque.is_infinite())
-    }) {
+    for (seed, robot) in robots()
+        .iter()
+        .enumerate()
+        .filter(|(_, robot)| robot.joints().iter().all(|joint| joint.rated_torque.is_infinite()))
+    {
         let [q, ..] = states(robot, seed as u64).remove(2);
         let [mut found, mut right] = [vec![0.0; q.len()], vec![0.0; q.len()]];
         goals(robot, None).cost(robot, None, &q, &mut found);

@@ -5,8 +5,8 @@ use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;
-use crate::math::{Columns, Frame};
 use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame};
 
 /// Motions (m, n) of a robot, row-major: where each joint is, how fast it moves, and how that changes.
 #[derive(Debug, Clone, Copy)]

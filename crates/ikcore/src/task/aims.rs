@@ -250,7 +250,8 @@ mod tests {
         for kind in kinds {
             let is_position = kind.kind == TaskKind::Position;
             let fourth = if is_position { Subject::CenterOfMass } else { Subject::Tip(1) };
-            let subjects = [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }, fourth];
+            let subjects =
+                [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }, fourth];
             let tolerance = Tolerance::default();
             let task = |subject| NamedTask { subject, task: Some(kind), tolerance }.validated().unwrap();
             let tasks = subjects.map(|subject| if subject.is_pair() { task(subject).held(3.0) } else { task(subject) });

@@ -30,7 +30,9 @@ pub(super) fn check_torque_scale(robot: &Robot, relative_to: Option<&[f64]>) -> 
         return Err(Error::out_of_range(what, "positive, infinite for a joint that does not count", scale[j]));
     }
     if scale.iter().all(|torque| torque.is_infinite()) {
-        return Err(Error::Contradiction { problem: format!("{what} is infinite for all joints: none would count").into() });
+        return Err(Error::Contradiction {
+            problem: format!("{what} is infinite for all joints: none would count").into(),
+        });
     }
     Ok(())
 }
