@@ -452,10 +452,17 @@ impl ConstantLimits {
     /// Returns why a joint cannot hold the arm at `q` (n,), if one cannot.
     pub(crate) fn too_heavy(&self, q: &[f64]) -> Option<String> {
         let torques = self.torques.as_ref()?;
-        let TooHeavy { joint, torque, limit } = torques.too_heavy(&mut torques.point(), q)?;
+        torques.too_heavy(&mut torques.point(), q).map(|found| self.heavy_in_words(found))
+    }
+
+    /// Says which joint cannot hold the arm, and why.
+    pub(super) fn heavy_in_words(&self, TooHeavy { joint, torque, limit }: TooHeavy) -> String {
         let (name, unit) = (self.joint_name(joint), self.torque_unit(joint));
         let [torque, limit] = [torque.abs(), limit].map(number);
-        Some(format!("joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}"))
+        if torque == limit {
+            return format!("joint '{name}' needs all of its limit of {limit} {unit} to hold the arm");
+        }
+        format!("joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}")
     }
 
     /// Checks that a slowdown is finite.

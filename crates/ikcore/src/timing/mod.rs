@@ -53,6 +53,7 @@ pub use crate::math::cubic_spline::SplineEnds;
 pub use constant_limits::ConstantLimits;
 pub use joint_path::JointPath;
 pub(crate) use limit_share::OneLimit;
+pub(crate) use line_timing::Paced;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use time_optimal::{TimingOptions, time_optimal};
