@@ -81,6 +81,16 @@ def test_a_dragged_arm_shows_the_torques_of_its_motion() -> None:
     np.testing.assert_allclose(shown(arm)[1], shares(arm.q), atol=6e-4)
 
 
+def test_a_drag_after_a_motion_begins_at_rest() -> None:
+    arm = Arm(PANDA, START, [])
+    arm.put(START, np.full(7, 2.0), np.zeros(7))
+    arm.aim(PANDA.tips[0], bik.pose([0.0, 0.0, -0.15]) @ PANDA.fk(START))
+    arm.advance()
+    velocity, acceleration = arm.rates
+    np.testing.assert_allclose(acceleration, 60 * velocity, atol=1e-9)
+    assert np.abs(acceleration).max() <= 20.0 + 1e-6
+
+
 def test_playback_shows_the_torques_of_the_motion(viewer: bik.Viewer) -> None:
     limits = bik.Limits(acceleration=5.0)
     there = START + np.array([0.7, 0.4, 0, 0.3, 0, 0, 0])

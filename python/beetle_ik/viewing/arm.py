@@ -161,7 +161,8 @@ class Arm:
         if self._follow == "solve":
             self.solve()
             return False
-        before = self.rates[0] if self.rates else np.zeros(self.robot.dof)
+        # A new tracker begins at rest, whatever motion was shown before.
+        before = self.rates[0] if self.rates and self._tracker is not None else np.zeros(self.robot.dof)
         self.outcome = self._track()
         self.q, velocity = self.outcome.q, self.outcome.qd
         self.rates = (velocity, (velocity - before) / DT)
