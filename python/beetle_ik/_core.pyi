@@ -29,7 +29,7 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], _Pose] | _Mover
 _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
-_TipKey: TypeAlias = str | tuple[str, str]  # a tip, or one as seen from another
+_TipKey: TypeAlias = str | tuple[str, str]  # a tip, one as seen from another, or "center_of_mass"
 _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
@@ -1659,7 +1659,7 @@ class Pointing(Task):
 @disjoint_base
 class Goal:
     """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
-    `LinkManipulability` or `Clearance`.
+    `LinkManipulability`, `Clearance` or `LeastTorque`.
     """
 
     @property
@@ -1733,6 +1733,23 @@ class Clearance(Goal):
     def up_to(self) -> float:
         """Distance beyond which a pair no longer counts (m)."""
 
+@final
+class LeastTorque(Goal):
+    """Holds the arm up with little torque: minimises the sum of (torque / scale)^2 over the joints, with the torques of `Robot.torques(q)`,
+    payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
+
+    Args:
+        relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+            of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
+            floating base has no motors, and never counts.
+        weight: weight relative to other goals.
+    """
+
+    def __new__(cls, *, relative_to: ArrayLike | None = None, weight: float = 1.0) -> LeastTorque: ...
+    @property
+    def relative_to(self) -> _Array | None:
+        """What the torque of each joint is compared with (n,) (N m, N); None: its torque limit."""
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
@@ -1760,7 +1777,8 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
-            "right_tool") gives the pose of the second tip in the frame of the first.
+            "right_tool") gives the pose of the second tip in the frame of the first; "center_of_mass" the position (3,) (m)
+            of the centre of all masses.
         task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
             not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
@@ -3036,8 +3054,8 @@ class Tracker:
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
         with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-        ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-        is held there, with priority over all other targets.
+        ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+        all masses. A pair that has reached its target is held there, with priority over all other targets.
 
         Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
         jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
