@@ -84,7 +84,7 @@ class CheapPostures(Attack):
         joints, count = case["joints"], len(arms.free(case["joints"]))
         scale = ", ".join("np.inf" if np.isinf(value) else repr(value) for value in case["scale"][:count])
         return (
-            f'robot = bik.Robot.from_urdf("""{_urdf(case)}""", tip="l{len(joints)}").with_gravity({case["gravity"]})\n'
+            f'robot = bik.Robot.from_urdf("""{urdf(case)}""", tip="l{len(joints)}").with_gravity({case["gravity"]})\n'
             f"qs = robot.clip(np.array({arms.configurations(joints).tolist()}))\n"
             f"goal = bik.goals.LeastTorque(relative_to=[{scale}], weight={case['weight']!r})\n"
             "task, places = bik.tasks.Position(), robot.fk(qs)[:, :3, 3]\n"
@@ -95,7 +95,7 @@ class CheapPostures(Attack):
         from dynamics_oracle import DynamicsOracle
 
         robot = left["robot"]
-        pinocchio = DynamicsOracle(_urdf(case), robot)
+        pinocchio = DynamicsOracle(urdf(case), robot)
         scale, rest = np.array(case["scale"][: robot.dof]), np.zeros(robot.dof)
         for q, place, found in zip(left["qs"], left["places"], left["found"], strict=True):
             if not found.success:
@@ -138,7 +138,7 @@ class CentersOfMass(Attack):
         q = np.concatenate([arms.configurations(joints)[0] for joints in (case["joints"], case["branch"])])
         start = "q" if case["begin"] else "0.9 * q"
         return (
-            f'robot = bik.Robot.from_urdf("""{_urdf(case)}""", tip={tips})\n'
+            f'robot = bik.Robot.from_urdf("""{urdf(case)}""", tip={tips})\n'
             f"q = robot.clip(np.array({q.tolist()}))\n"
             f"center = robot.center_of_mass(q) + np.array({list(case['offset'])})\n"
             f"task = {{'center_of_mass': bik.tasks.Position(weights={case['weights']}, level={case['level']})}}\n"
@@ -150,7 +150,7 @@ class CentersOfMass(Attack):
         from dynamics_oracle import DynamicsOracle
 
         found, robot, weights = left["found"], left["robot"], np.array(case["weights"])
-        away = DynamicsOracle(_urdf(case), robot).center_of_mass(found.q) - left["center"]
+        away = DynamicsOracle(urdf(case), robot).center_of_mass(found.q) - left["center"]
         error = float(np.linalg.norm(away[weights > 0.0]))
         if not abs(error - found.errors["center_of_mass"][0]) < 1e-8 * (1 + error):
             raise BrokenError("the error of the centre differs", (error, found.errors["center_of_mass"][0]))
