@@ -4,8 +4,8 @@ Retime a recording
 
 A motion that someone guided by hand and an encoder recorded is slow, uneven and
 rough in its last digit. ``time_optimal`` makes it as fast as the limits allow;
-``tolerance=`` lets it smooth the roughness, which would cost minutes. Without one it
-says so.
+``tolerance=`` lets it smooth the roughness, which would cost minutes. Without one,
+it says so.
 """
 
 import warnings

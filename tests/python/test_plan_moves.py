@@ -1,5 +1,6 @@
 """`plan_moves` against random programs, and by name against what nobody can make."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -65,8 +66,8 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
     assert made >= 3
 
 
-# The first and the third: the least motion leads into a singularity or a limit. The others pass one so closely that a step of the search
-# can meet another branch of configurations.
+# The least motion of the first and the third leads into a singularity or a limit. The others pass a singularity so
+# closely that a step of the search can meet another branch of configurations.
 FOLLOWABLE = [
     ("iiwa14", [1.0, 0.4, -0.1, 1.1, 1.2, -0.4, 2.3], [-0.2, -0.3, -0.3]),
     ("panda", [1.8, 0.3, 1.9, -0.5, 0.0, 2.6, -1.3], [0.1, 0.1, 0.0]),
@@ -120,6 +121,50 @@ def can_follow(robot: bik.Robot, start: np.ndarray, goal: np.ndarray) -> bool:
         if (q < robot.lower + 0.02).any() or (q > robot.upper - 0.02).any():
             return False
     return bool(np.linalg.norm(goal[:3, 3] - begin[:3, 3]) > 0.01)
+
+
+def widenable(random: np.random.Generator) -> list[dict[str, Any]]:
+    """Moves along the axes by round lengths, each with the `size` that its blends may take up to half of."""
+    pose, program = UR5.fk(HOME), list[dict[str, Any]]()
+    for _ in range(random.integers(2, 4)):
+        kind, size = str(random.choice(["line", "line", "arc", "joints"])), float(random.choice([0.02, 0.05, 0.1]))
+        speed = [None, 0.05, 0.25, 2.0][random.integers(4)]
+        if kind == "joints":
+            goal = HOME + np.round(random.uniform(-0.3, 0.3, 6), 1)
+            pose = UR5.fk(goal)
+            program.append({"kind": kind, "goal": goal, "size": size})
+            continue
+        first, second = np.eye(3)[random.permutation(3)[:2]] * random.choice([-1.0, 1.0], 2)[:, None]
+        via, pose = pose[:3, 3] + 0.5 * size * (first + second), pose.copy()
+        pose[:3, 3] += size * first
+        given = {"via": via} if kind == "arc" else {}
+        program.append({"kind": kind, "pose": pose, "speed": speed, "size": size, **given})
+    return program
+
+
+@pytest.mark.parametrize("jerk", [None, 100.0], ids=["acceleration", "jerk"])
+def test_more_room_never_makes_a_program_slower(jerk: float | None) -> None:
+    # Under jerk limits the fastest timing is found to some thousandths.
+    most = 1 + 1e-6 if jerk is None else 1.005
+    for seed in range(12 if jerk is None else 6):
+        random = np.random.default_rng(seed)
+        moves, acceleration = widenable(random), float(random.choice([2.0, 5.0, 8.0]))
+
+        def duration(blend: float, speed: float, wider: float, moves: Any = moves, a: float = acceleration) -> float:
+            program = []
+            for i, move in enumerate(moves):
+                given = {key: value for key, value in move.items() if key != "size"}
+                if i + 1 < len(moves):
+                    given["blend"] = blend * min(move["size"], moves[i + 1]["size"])
+                if given.get("speed"):
+                    given["speed"] *= speed
+                program.append(given)
+            limits = bik.Limits(velocity=2.0 * wider, acceleration=a * wider, jerk=jerk and jerk * wider)
+            return bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=limits).trajectory.duration
+
+        steps = [duration(blend, 1.0, 1.0) for blend in (0.0, 0.1, 0.3, 0.5)]
+        steps += [duration(0.5, 1.5, 1.0), duration(0.5, 1.5, 1.5)]
+        assert all(after <= most * before for before, after in itertools.pairwise(steps)), (seed, steps)
 
 
 def test_the_place_counts_from_the_start_of_a_blended_move() -> None:

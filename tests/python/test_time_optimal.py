@@ -3,7 +3,10 @@
 import json
 import logging
 import re
+import subprocess
+import sys
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -153,6 +156,15 @@ def test_noise_that_sets_the_duration_is_told(jerk: float | None) -> None:
         with pytest.warns(UserWarning, match=f"give tolerance={said[4]}, "):
             bik.time_optimal(noisy, limits, tolerance=0.1 * jitter)
     assert told_of >= 3
+
+
+def test_the_command_line_tells_of_noise_in_its_own_words(tmp_path: Path) -> None:
+    at, file = np.linspace(0, 6, 400), tmp_path / "recorded.csv"
+    file.write_text("joint\n" + "\n".join(f"{q:.3f}" for q in np.sin(at) + 2e-3 * (np.arange(400) % 2)))
+    command = [sys.executable, "-m", "beetle_ik", "plan", "retime", str(file), "--acceleration-limit", "10"]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert ran.stderr.startswith("Warning: joint 'joint' jitters by 0.00")
+    assert re.search(r" s; give --tolerance 0\.00\d+, which smooths it\n$", ran.stderr)
 
 
 def test_paths_without_noise_are_not_called_noisy() -> None:

@@ -59,7 +59,7 @@ class _Commands(TyperGroup):
 
 
 def _show_warning(others: Any, message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
-    """Prints a warning of this library, or for users in general, as one line; `others` shows those of other libraries."""
+    """Prints a warning of this library, or one for users, as one line; `others` shows those of other libraries."""
     if category in (UnitsWarning, UserWarning):
         typer.echo(f"Warning: {in_options(message)}", err=True)
     else:

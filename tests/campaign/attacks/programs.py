@@ -38,7 +38,7 @@ def distances(points: Array, start: Array, move: dict[str, Any]) -> Array:
 
 
 def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Array | None:
-    """Joint positions at the end of a line from q, by small steps of Newton's method; None where a step is large or near a limit."""
+    """Joint positions at the end of a line from q, by small Newton steps; None where one is large or near a limit."""
     lower, upper = arms.bounds(joints)
     start = arms.kinematics(joints, q[None])[0][0]
     steps = int(np.ceil(max(np.linalg.norm(move["way"]) / 0.004, move["turn"] / 0.02, 1.0)))
@@ -49,12 +49,19 @@ def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Ar
             poses, jacobians = arms.kinematics(joints, q[None])
             relative = turned @ poses[0, :3, :3].T
             skew = 0.5 * (relative - relative.T)
-            missing = np.r_[start[:3, 3] + part * np.array(move["way"]) - poses[0, :3, 3], skew[2, 1], skew[0, 2], skew[1, 0]]
+            missing = np.r_[
+                start[:3, 3] + part * np.array(move["way"]) - poses[0, :3, 3], skew[2, 1], skew[0, 2], skew[1, 0]
+            ]
             if np.linalg.norm(missing) < MET:
                 break
             q = q + np.linalg.pinv(jacobians[0], rcond=1e-6) @ missing
         moved = np.abs(q - before).max()
-        if np.linalg.norm(missing) > MET or moved > LARGEST_STEP or (q < lower + ROOM).any() or (q > upper - ROOM).any():
+        if (
+            np.linalg.norm(missing) > MET
+            or moved > LARGEST_STEP
+            or (q < lower + ROOM).any()
+            or (q > upper - ROOM).any()
+        ):
             return None
     return q
 

@@ -67,7 +67,7 @@ impl RecordedNoise {
 /// they have none, or where it costs little.
 ///
 /// # Errors
-/// [`crate::Error::Interrupted`].
+/// Interruptions alone.
 pub fn recorded_noise(
     path: &JointPath,
     tolerance: &[f64],
