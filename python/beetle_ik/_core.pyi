@@ -817,6 +817,7 @@ class Status(IntEnum):
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
     - `LEVEL_GIVEN_UP`: The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.
+    - `HELD_BY_TORQUE`: A step of a track in which a torque limit holds the tip away from the target: a joint could not move or hold the arm farther on, or carries more than it can.
     """
 
     SOLVED = 0
@@ -839,6 +840,7 @@ class Status(IntEnum):
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
     LEVEL_GIVEN_UP = 19
+    HELD_BY_TORQUE = 20
 
 @final
 class APPS:
@@ -2997,7 +2999,8 @@ class Tracker:
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
-            sample them.
+            sample them. With `torque`, which needs acceleration limits, a command is sent only if it and the stop after it are within the
+            torques at every tick, with what the arm carries; see `Tracker.robot`.
         goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
@@ -3114,7 +3117,16 @@ class Tracker:
         """Time step (s)."""
     @property
     def robot(self) -> Robot:
-        """The robot."""
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
+    @robot.setter
+    def robot(self, value: Robot) -> None:
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
     @property
     def limits(self) -> Limits:
         """The limits in force."""
@@ -3130,6 +3142,7 @@ class Step:
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
         HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        HELD_BY_TORQUE if a torque limit does, or is exceeded by what the arm carries;
         LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
         IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
@@ -3741,7 +3754,7 @@ def state_to_state(
         end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 
     Returns:
-        A `Trajectory` of cubic segments.
+        A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
 
     Raises:
         TypeError: limits that are no `Limits`.
@@ -3798,11 +3811,13 @@ def time_optimal(
         robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
             `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
-    Equal consecutive rows, as a recording has at rest, are one waypoint.
+    Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
+    says so: by how much which joint jitters, and the `tolerance` that smooths it.
 
     Returns:
         A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-        points. With jerk limits it consists of quintic segments that meet the path at their ends.
+        points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+        or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -4697,6 +4712,7 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+        start_outside: joints that begin outside their limits, each (joint, value, limit), as the attribute says.
 
     For example:
 
@@ -4707,7 +4723,12 @@ class Trajectory:
     """
 
     def __new__(
-        cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
+        cls,
+        time: ArrayLike,
+        coefficients: ArrayLike,
+        *,
+        joint_names: list[str] | None = None,
+        start_outside: list[tuple[str, float, float]] | None = None,
     ) -> Trajectory: ...
     @staticmethod
     def from_samples(
@@ -4742,6 +4763,11 @@ class Trajectory:
     @property
     def joint_names(self) -> list[str]:
         """Names of the joints, in the order of q."""
+    @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m): of the motions of
+        `state_to_state`, `time_optimal` and plans. Files do not hold them.
+        """
     def max_velocity(self) -> _Array:
         """Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
     def max_acceleration(self) -> _Array:

@@ -65,6 +65,73 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
     assert made >= 3
 
 
+# The first and the third: the least motion leads into a singularity or a limit. The others pass one so closely that a step of the search
+# can meet another branch of configurations.
+FOLLOWABLE = [
+    ("iiwa14", [1.0, 0.4, -0.1, 1.1, 1.2, -0.4, 2.3], [-0.2, -0.3, -0.3]),
+    ("panda", [1.8, 0.3, 1.9, -0.5, 0.0, 2.6, -1.3], [0.1, 0.1, 0.0]),
+    ("panda", [0.2, 0.4, -1.7, -1.4, 0.7, 1.4, 1.7], [0.3, 0.4, 0.1]),
+    ("ur5e", [-0.6, -0.7, -2.2, 1.8, -2.3, -1.4], [0.4, -0.3, 0.3]),
+    ("ur5e", [-0.7, 2.4, -1.5, -2.2, -2.1, 2.5], [0.2, -0.2, -0.2]),
+]
+
+
+@pytest.mark.parametrize(("name", "start", "way"), FOLLOWABLE)
+def test_a_line_that_can_be_followed_is_followed(name: str, start: list[float], way: list[float]) -> None:
+    robot = bik.Robot.named(name)
+    goal = robot.fk(start)
+    goal[:3, 3] += way
+    program = [{"kind": "line", "pose": goal, "speed": 0.1}]
+    plan = bik.plan_moves(robot, moves_of(program), start_q=start, limits=LIMITS)
+    limits = {"velocity": robot.velocity_limit, "acceleration": np.full(robot.dof, ACCELERATION)}
+    assert faults(robot, robot.fk, program, plan, limits, samples=3000) == []
+
+
+def test_random_lines_that_can_be_followed_are_followed() -> None:
+    followed = 0
+    for name in ("ur5e", "panda", "iiwa14", "gen3"):
+        robot = bik.Robot.named(name)
+        lower, upper = np.clip(robot.lower, -3.0, 3.0), np.clip(robot.upper, -3.0, 3.0)
+        for seed in range(12):
+            random = np.random.default_rng(seed)
+            start = np.round(lower + (upper - lower) * random.uniform(0.1, 0.9, robot.dof), int(random.integers(1, 4)))
+            goal = robot.fk(start)
+            goal[:3, 3] += np.round(random.uniform(-0.3, 0.3, 3), 1)
+            if not can_follow(robot, start, goal):
+                continue
+            followed += 1
+            assert bik.plan_moves(robot, [Line(goal)], start_q=start, limits=LIMITS).success, (name, seed)
+    assert followed >= 8
+
+
+def can_follow(robot: bik.Robot, start: np.ndarray, goal: np.ndarray) -> bool:
+    """Whether small steps with the pseudo-inverse reach the end of a line, with room to the limits."""
+    q, begin = start.copy(), robot.fk(start)
+    for part in np.linspace(0.0, 1.0, 80)[1:]:
+        before = q
+        for _ in range(10):
+            pose = robot.fk(q)
+            skew = 0.5 * (begin[:3, :3] @ pose[:3, :3].T - pose[:3, :3] @ begin[:3, :3].T)
+            place = (1 - part) * begin[:3, 3] + part * goal[:3, 3]
+            missing = np.r_[place - pose[:3, 3], skew[2, 1], skew[0, 2], skew[1, 0]]
+            q = q + np.linalg.pinv(robot.jacobian(q), rcond=1e-6) @ missing
+        if np.linalg.norm(missing) > 1e-9 or np.abs(q - before).max() > 0.05:
+            return False
+        if (q < robot.lower + 0.02).any() or (q > robot.upper - 0.02).any():
+            return False
+    return bool(np.linalg.norm(goal[:3, 3] - begin[:3, 3]) > 0.01)
+
+
+def test_the_place_counts_from_the_start_of_a_blended_move() -> None:
+    corner, far = shifted(z=-0.1), shifted(y=2.0, z=-0.1)
+    places = []
+    for blend in (0.0, 0.01, 0.04):
+        with pytest.raises(Invalid, match=r"move 1 cannot be reached: (.*) m along it") as error:
+            bik.plan_moves(UR5, [Line(corner, blend=blend), Line(far)], start_q=HOME, limits=LIMITS)
+        places.append(float(str(error.value).split(": ")[1].split(" m along")[0]))
+    assert np.ptp(places) < 5e-3
+
+
 def test_the_judge_notices_what_is_wrong() -> None:
     program = [{"kind": "line", "pose": shifted(z=-0.1), "speed": 0.1}]
     limits = {"velocity": UR5.velocity_limit, "acceleration": np.full(6, ACCELERATION)}

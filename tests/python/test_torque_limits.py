@@ -202,8 +202,6 @@ def test_calls_that_cannot_keep_torques_refuse_them_by_name() -> None:
     with pytest.raises(bik.UnsupportedLimit, match="torque"):
         bik.solve(ROBOT, [0.4, 0, 0.5], limits=bik.Limits(torque=1.0))
     with pytest.raises(bik.UnsupportedLimit, match="torque"):
-        bik.Tracker(ROBOT, [0] * 5, dt=0.01, limits=given)
-    with pytest.raises(bik.UnsupportedLimit, match="torque"):
         bik.time_optimal([[0, 0], [1, 1]], bik.Limits(acceleration=1.0, torque=1.0))
     with pytest.raises(bik.UnsupportedLimit, match="torque"):
         bik.state_to_state([0] * 5, [0.1] * 5, given, robot=ROBOT)

@@ -127,6 +127,7 @@ mod tracking {
     mod tips;
     mod track;
     mod way_back;
+    mod within_torques;
     mod work;
 }
 mod trajectory {

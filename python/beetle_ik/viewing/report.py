@@ -29,6 +29,7 @@ _WORDS = {
     Status.IN_COLLISION: "in collision",
     Status.HELD_BY_OBSTACLE: "held by an obstacle",
     Status.HELD_BY_CONSTRAINT: "held by what is kept",
+    Status.HELD_BY_TORQUE: "held by a torque limit",
     Status.OUT_OF_REACH: "out of reach",
     Status.ROTATION_GIVEN_UP: "position reached",
     Status.POSITION_GIVEN_UP: "rotation reached",

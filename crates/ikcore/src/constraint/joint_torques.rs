@@ -183,6 +183,12 @@ impl JointTorques {
         terms.of_change.iter_mut().zip(&terms.hold).for_each(|(torque, hold)| *torque -= hold);
     }
 
+    /// Writes the torques without friction, with the first two derivatives as velocities and accelerations.
+    pub fn write_torques(&self, at: &mut TorquePoint, torques: &mut [f64]) {
+        self.robot.write_frames(&at.q, &mut at.scratch.frames);
+        self.inverse(at, Derivatives::Both, torques);
+    }
+
     /// Writes what holds the arm at a point.
     pub(super) fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
         self.robot.write_frames(&at.q, &mut at.scratch.frames);

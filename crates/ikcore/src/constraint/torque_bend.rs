@@ -42,7 +42,7 @@ pub(crate) type Rest = [f64; 3];
 
 /// How many of these factors a call needs.
 pub(super) const HOLD: usize = 1;
-pub(super) const HOLD_AND_SQUARE: usize = 2;
+pub(crate) const HOLD_AND_SQUARE: usize = 2;
 pub(crate) const ALL_FACTORS: usize = 3;
 
 /// What is known of a moving frame and of the load on it.
