@@ -17,7 +17,7 @@ use crate::math::arithmetic::Baseline;
 use crate::math::vector3::{Vector, norm, sub};
 
 /// Distance (rad) between two values of the scan.
-const SPACING: f64 = 0.19;
+const SPACING: f64 = 0.15;
 
 /// Largest number of values of the scan.
 const VALUES: usize = 64;
@@ -43,7 +43,7 @@ const SLACK: f64 = 0.5;
 const WORSE: [f64; 2] = [0.1, 0.3];
 
 /// Difference of the angles (rad) of two seeds that lead to the same optimum.
-const SAME: f64 = 4e-3;
+const SAME: f64 = 1e-4;
 
 /// What a descent may gain beyond a seed: the error of the parabola at its vertex, or the slope at the end of a column, times the first;
 /// at any end, and for a tip off the last axis, the second too.
