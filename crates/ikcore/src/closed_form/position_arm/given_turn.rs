@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::goal::TurnRange;
-use super::of_position::PositionArm;
+use super::of_position::{AtLimit, PositionArm};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
 use crate::closed_form::branches::MOST_JOINTS;
@@ -26,16 +26,6 @@ pub struct GivenTurn<'a> {
     basis: [Vector; 2],
     /// Numbers of the other three.
     left: [usize; 3],
-}
-
-/// One of the first three joints at a limit (rad).
-#[derive(Debug, Clone)]
-pub struct AtLimit {
-    joint: usize,
-    limit: f64,
-    turn: Angle,
-    /// The other three of the first four; `None` where they only move a point in a plane.
-    three: Option<ThreeAxes>,
 }
 
 impl PositionArm {

@@ -1,6 +1,5 @@
 //! Arm of three to five revolute joints whose first three carry the tip to a position.
 
-use super::given_turn::AtLimit;
 use super::scan::MOST;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -26,6 +25,16 @@ pub(crate) struct PositionArm {
     pub(super) basis: [Vector; 3],
     /// The first three joints at the limits of the arm.
     pub(super) at_limits: Vec<AtLimit>,
+}
+
+/// One of the first three joints at a limit (rad).
+#[derive(Debug, Clone)]
+pub(super) struct AtLimit {
+    pub joint: usize,
+    pub limit: f64,
+    pub turn: Angle,
+    /// The other three of the first four; `None` where they only move a point in a plane.
+    pub three: Option<ThreeAxes>,
 }
 
 impl PositionArm {
