@@ -795,7 +795,7 @@ class Limits:
 # --- solvers ------------------------------------------------------------------------------------
 
 class Status(IntEnum):
-    """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
+    """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success, and true in conditions.
 
     - `SOLVED`: Within the tolerances.
     - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached the value asked for.

@@ -8,8 +8,10 @@ use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, is_list, own, row, shape_text, shortened, table, times, vector};
-use crate::error::{invalid, raise};
+use crate::convert::{
+    Array, array, copied, counted, is_list, own, row, shape_text, shortened, summary, table, times, vector,
+};
+use crate::error::{invalid, misfit, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
 use crate::options::NewArguments;
@@ -209,8 +211,14 @@ impl PyTrajectory {
     fn sample<'py>(
         &self,
         py: Python<'py>,
-        dt: f64,
+        dt: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>, Array<'py>, Array<'py>)> {
+        let dt: f64 = dt.extract().map_err(|_| {
+            misfit(format!(
+                "dt must be a number of seconds, got {}; at(t) gives the motion at given times",
+                summary(dt)
+            ))
+        })?;
         let times = self.core.sample_times(dt).map_err(raise)?;
         let (q, qd, qdd) = self.at_times(py, &times, false)?;
         Ok((own(row(py, times)), q, qd, qdd))

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{array, optional_count, shape_text, vector};
 use crate::error::{invalid, raise};
-use crate::limits::{PerJoint, PyLimits, Sampling, limits_of_call};
+use crate::limits::{PerJoint, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
 use crate::python_calls::warn_user;
 use crate::robot::PyRobot;
@@ -70,7 +70,7 @@ const METHOD: &str = "time_optimal";
 pub fn time_optimal(
     py: Python<'_>,
     waypoints_q: &Bound<'_, PyAny>,
-    limits: &PyLimits,
+    limits: &Bound<'_, PyAny>,
     knots: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] spline: &str,
     blend: Option<f64>,
@@ -81,6 +81,7 @@ pub fn time_optimal(
     tolerance: Option<&Bound<'_, PyAny>>,
     robot: Option<&PyRobot>,
 ) -> PyResult<PyTrajectory> {
+    let limits = required_limits(limits)?;
     let waypoints = array("waypoints_q", waypoints_q)?;
     let &[_, n @ (1..)] = waypoints.shape() else {
         let got = shape_text(waypoints.shape());
