@@ -1,6 +1,6 @@
 //! Times of a million ticks of a tracker: median, 99.99th percentile and largest, in ns.
 //!
-//! Under jerk limits, with targets that jump every half second and have 1 mm of noise. A mean says nothing about a control
+//! Under limits of each order and of torques, with targets that jump every half second and have 1 mm of noise. A mean says nothing about a control
 //! loop; the largest time is mostly that of the operating system.
 
 use std::time::Instant;
@@ -21,8 +21,11 @@ fn main() {
     let velocity = Limits::of(&arm).replace(Field::Velocity, constant(1.5)).expect("limits");
     let acceleration = velocity.clone().replace(Field::Acceleration, constant(5.0)).expect("limits");
     let jerk = acceleration.clone().replace(Field::Jerk, constant(50.0)).expect("limits");
+    let torques: Vec<f64> = arm.joints().iter().map(|joint| 0.6 * joint.rated_torque).collect();
+    let hard = velocity.clone().replace(Field::Acceleration, constant(15.0)).expect("limits");
+    let torque = hard.with_torque_limit(torques).expect("limits");
     println!("{:>14} {:>8} {:>8} {:>8} {:>8}", "limits up to", "noise", "p50", "p99.99", "max");
-    for (name, limits) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)] {
+    for (name, limits) in [("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk), ("torque", torque)] {
         for noise in [0.0, 1e-3] {
             let times = times(&arm, &limits, noise);
             let at = |fraction: f64| times[((TICKS - 1) as f64 * fraction) as usize];

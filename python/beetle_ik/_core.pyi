@@ -29,7 +29,7 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], _Pose] | _Mover
 _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
-_TipKey: TypeAlias = str | tuple[str, str]  # a tip, or one as seen from another
+_TipKey: TypeAlias = str | tuple[str, str]  # a tip, one as seen from another, or "center_of_mass"
 _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
@@ -817,6 +817,7 @@ class Status(IntEnum):
     - `POSITION_GIVEN_UP`: The rotation is within its tolerance, and the position as near as the search found; a configuration that meets both was not found.
     - `HELD_BY_CONSTRAINT`: A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.
     - `LEVEL_GIVEN_UP`: The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.
+    - `HELD_BY_TORQUE`: A step of a track in which a torque limit holds the tip away from the target: a joint could not move or hold the arm farther on, or carries more than it can.
     """
 
     SOLVED = 0
@@ -839,6 +840,7 @@ class Status(IntEnum):
     POSITION_GIVEN_UP = 17
     HELD_BY_CONSTRAINT = 18
     LEVEL_GIVEN_UP = 19
+    HELD_BY_TORQUE = 20
 
 @final
 class APPS:
@@ -1657,7 +1659,7 @@ class Pointing(Task):
 @disjoint_base
 class Goal:
     """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
-    `LinkManipulability` or `Clearance`.
+    `LinkManipulability`, `Clearance` or `LeastTorque`.
     """
 
     @property
@@ -1731,6 +1733,23 @@ class Clearance(Goal):
     def up_to(self) -> float:
         """Distance beyond which a pair no longer counts (m)."""
 
+@final
+class LeastTorque(Goal):
+    """Holds the arm up with little torque: minimises the sum of (torque / scale)^2 over the joints, with the torques of `Robot.torques(q)`,
+    payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
+
+    Args:
+        relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+            of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
+            floating base has no motors, and never counts.
+        weight: weight relative to other goals.
+    """
+
+    def __new__(cls, *, relative_to: ArrayLike | None = None, weight: float = 1.0) -> LeastTorque: ...
+    @property
+    def relative_to(self) -> _Array | None:
+        """What the torque of each joint is compared with (n,) (N m, N); None: its torque limit."""
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
@@ -1758,7 +1777,8 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
-            "right_tool") gives the pose of the second tip in the frame of the first.
+            "right_tool") gives the pose of the second tip in the frame of the first; "center_of_mass" the position (3,) (m)
+            of the centre of all masses.
         task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
             not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
@@ -2979,7 +2999,8 @@ class Tracker:
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
         limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
             `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
-            sample them.
+            sample them. With `torque`, which needs acceleration limits, a command is sent only if it and the stop after it are within the
+            torques at every tick, with what the arm carries; see `Tracker.robot`.
         goals, joint_weights: as in `track`.
         position_tolerance: largest position error (m); for several tips also a dict.
         rotation_tolerance: largest rotation error (rad); for several tips also a dict.
@@ -3033,8 +3054,8 @@ class Tracker:
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
         with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-        ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-        is held there, with priority over all other targets.
+        ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+        all masses. A pair that has reached its target is held there, with priority over all other targets.
 
         Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
         jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
@@ -3096,7 +3117,16 @@ class Tracker:
         """Time step (s)."""
     @property
     def robot(self) -> Robot:
-        """The robot."""
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
+    @robot.setter
+    def robot(self, value: Robot) -> None:
+        """The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+        `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+        torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+        """
     @property
     def limits(self) -> Limits:
         """The limits in force."""
@@ -3112,6 +3142,7 @@ class Step:
     def status(self) -> Status:
         """SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
         HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+        HELD_BY_TORQUE if a torque limit does, or is exceeded by what the arm carries;
         LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
         IMPROVED if nearer than in the previous step; otherwise CAPPED.
         """
@@ -3723,7 +3754,7 @@ def state_to_state(
         end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 
     Returns:
-        A `Trajectory` of cubic segments.
+        A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
 
     Raises:
         TypeError: limits that are no `Limits`.
@@ -3785,7 +3816,8 @@ def time_optimal(
 
     Returns:
         A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-        points. With jerk limits it consists of quintic segments that meet the path at their ends.
+        points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+        or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -4680,6 +4712,7 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+        start_outside: joints that begin outside their limits, each (joint, value, limit), as the attribute says.
 
     For example:
 
@@ -4690,7 +4723,12 @@ class Trajectory:
     """
 
     def __new__(
-        cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
+        cls,
+        time: ArrayLike,
+        coefficients: ArrayLike,
+        *,
+        joint_names: list[str] | None = None,
+        start_outside: list[tuple[str, float, float]] | None = None,
     ) -> Trajectory: ...
     @staticmethod
     def from_samples(
@@ -4725,6 +4763,11 @@ class Trajectory:
     @property
     def joint_names(self) -> list[str]:
         """Names of the joints, in the order of q."""
+    @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m): of the motions of
+        `state_to_state`, `time_optimal` and plans. Files do not hold them.
+        """
     def max_velocity(self) -> _Array:
         """Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
     def max_acceleration(self) -> _Array:

@@ -169,6 +169,11 @@ SPOILED = {
         "motion = bik.Trajectory(motion.time / 1e4, powers * scale)",
         "a tip is beyond its limit",
     ),
+    "tracked_torques": (
+        "q = np.array(commands)\ncommands = list(q[:1] + 1e3 * (q - q[:1]))\n"
+        "statuses = [bik.Status.SOLVED] * len(statuses)",
+        "a torque is beyond its limit",
+    ),
     "kept_motions": (
         "told = [0.0 * each - 1.0 for each in told]",
         "the largest error is more than told",

@@ -376,3 +376,30 @@ def test_joint_weights_are_options_of_solve_and_track() -> None:
         *asked, "--all", "--joint-weights", "2,1,1,1,1,1,1"
     )
     assert "joint-weights" in run("track", "--help").stdout
+
+
+def test_a_track_with_a_payload_keeps_the_torques_of_the_file() -> None:
+    path = (
+        "track",
+        "panda",
+        "--curve",
+        "circle",
+        "--diameter",
+        "0.1",
+        "--duration",
+        "2",
+        "--dt",
+        "0.01",
+        "--position-tolerance",
+        "1",
+    )
+    accelerations = ("--acceleration-limit", "15,7.5,10,12.5,15,20,20")
+    summary = run_json(*path, "--payload", "2", "--torque-limits", *accelerations)
+    assert summary["steps"] == 200
+    assert refused(*path, "--payload", "2") == (
+        "Error: --payload counts only where torques are limited: use --torque-limits too"
+    )
+    assert refused(*path, "--torque-limits") == (
+        "Error: track cannot honour torque limits: joint 'panda_joint1' may change its velocity at once, which takes "
+        "any torque: give --acceleration-limit"
+    )

@@ -176,7 +176,7 @@ def test_points_out_of_reach_are_left_out() -> None:
     poses = np.array([bik.pose(at, rpy=[np.pi, 0.0, 0.0]) for at in places])
     limits = bik.Limits(**FAST)
     with pytest.raises(
-        bik.InvalidInputError, match=r"of the path cannot be reached.*; breaks=True, which lets the tool"
+        bik.InvalidInputError, match=r"of the path cannot be reached.*; try breaks=True, which lets the tool"
     ):
         bik.plan_along_path(UR5E, poses, limits=limits)
     plan = bik.plan_along_path(UR5E, poses, limits=limits, breaks=True)

@@ -168,12 +168,39 @@ def test_along_a_path_and_in_programs_torques_are_kept() -> None:
     assert np.max(largest(plan.trajectory) / (1.3 * motors)) <= 1 + 1e-9
 
 
+def test_along_a_path_postures_are_chosen_that_motors_can_hold() -> None:
+    panda = bik.Robot.named("panda").with_payload(3.0)
+    acceleration = [15, 7.5, 10, 12.5, 15, 20, 20]
+    rng = np.random.default_rng(1)
+    planned = 0
+    for _ in range(14):
+        start = panda.fk(rng.uniform(0.6 * panda.lower, 0.6 * panda.upper))
+        path = np.repeat(start[np.newaxis], 20, axis=0)
+        path[:, :3, 3] += np.linspace(0, 1, 20)[:, np.newaxis] * [0, 0.15, 0.05]
+        try:
+            free = bik.plan_along_path(panda, path, limits=bik.Limits(acceleration=acceleration))
+        except bik.InvalidInputError:  # out of reach
+            continue
+        postures, *_ = free.trajectory.at(np.linspace(0, free.trajectory.duration, 100))
+        hold = np.max(np.abs(panda.torques(postures)), axis=0)
+        motors = panda.torque_limit.copy()
+        weakest = int(np.argmax(hold / motors))
+        motors[weakest] = 0.9 * hold[weakest]
+        try:
+            plan = bik.plan_along_path(panda, path, limits=bik.Limits(acceleration=acceleration, torque=motors))
+        except bik.InfeasibleError:
+            continue
+        assert plan.success, plan.message
+        needed = np.abs(plan.torques(np.linspace(0, plan.trajectory.duration, 1000)))
+        assert np.max(needed - motors) <= 1e-9
+        planned += 1
+    assert planned >= 3
+
+
 def test_calls_that_cannot_keep_torques_refuse_them_by_name() -> None:
     given = limits(MOTORS)
     with pytest.raises(bik.UnsupportedLimit, match="torque"):
         bik.solve(ROBOT, [0.4, 0, 0.5], limits=bik.Limits(torque=1.0))
-    with pytest.raises(bik.UnsupportedLimit, match="torque"):
-        bik.Tracker(ROBOT, [0] * 5, dt=0.01, limits=given)
     with pytest.raises(bik.UnsupportedLimit, match="torque"):
         bik.time_optimal([[0, 0], [1, 1]], bik.Limits(acceleration=1.0, torque=1.0))
     with pytest.raises(bik.UnsupportedLimit, match="torque"):

@@ -32,6 +32,7 @@ mod closed_form {
 }
 mod dynamics {
     mod laws;
+    mod least_torque;
 }
 mod error {
     mod promised;
@@ -126,6 +127,7 @@ mod tracking {
     mod tips;
     mod track;
     mod way_back;
+    mod within_torques;
     mod work;
 }
 mod trajectory {

@@ -19,6 +19,13 @@ impl<T: Traversed> Traversed for Option<T> {
     }
 }
 
+/// A value that another thread holds at the moment is alive in any case.
+impl<T: Traversed> Traversed for std::sync::Mutex<T> {
+    fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.try_lock().map_or(Ok(()), |held| held.traverse(visit))
+    }
+}
+
 impl<T: Traversed> Traversed for Box<T> {
     fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
         (**self).traverse(visit)

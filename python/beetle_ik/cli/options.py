@@ -285,3 +285,11 @@ def _number(option: str, entry: str) -> float:
         return float(entry)
     except ValueError:
         raise InvalidInputError(f"{option}: '{entry}' is not a number") from None
+
+
+def loaded(arm: Robot, payload: float | None, torque_limits: bool) -> tuple[Robot, Any]:
+    """Returns the robot with its payload, and its torque limits if they are to be kept."""
+    if payload is not None and not torque_limits:
+        raise InvalidInputError("--payload counts only where torques are limited: use --torque-limits too")
+    carrying = arm if payload is None else arm.with_payload(payload)
+    return carrying, carrying.torque_limit if torque_limits else None

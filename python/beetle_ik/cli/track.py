@@ -18,6 +18,7 @@ from .options import (
     JointWeights,
     LinkRadius,
     Margin,
+    Payload,
     RobotName,
     SceneFile,
     Seed,
@@ -25,11 +26,13 @@ from .options import (
     Start,
     TipLink,
     TipSpeed,
+    TorqueLimits,
     Trusted,
     UrdfFile,
     Velocity,
     limit,
     load_robot,
+    loaded,
     make_solver,
     numbers,
     sinusoid,
@@ -97,6 +100,8 @@ def track(
     acceleration: Acceleration = None,
     jerk: Jerk = None,
     tip_speed: TipSpeed = None,
+    payload: Payload = None,
+    torque_limits: TorqueLimits = False,
     ease: Annotated[
         bool,
         typer.Option("--ease", help="Begin with an approach from rest that meets the moving path within the limits."),
@@ -123,7 +128,7 @@ def track(
     as_json: AsJson = False,
 ) -> None:
     """Follow a path with the tip, within the joint limits."""
-    arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
+    arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     triples = {"center": center, "a": a, "b": b}
     others = {
         "diameter": diameter,
@@ -138,7 +143,7 @@ def track(
     given: dict[str, Any] = {name: numbers(f"--{name}", text, 3) for name, text in triples.items() if text is not None}
     given |= {name: value for name, value in others.items() if value is not None}
     path = _reference(arm, curve, points, duration, given)
-    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration, jerk, tip_speed)
+    limits, limits_from = _limits(velocity, velocity_sinusoid, acceleration, jerk, tip_speed, torque)
     with results_folder(out) as folder:
         result = track_path(
             arm,
@@ -171,6 +176,7 @@ def _limits(
     acceleration: str | None,
     jerk: str | None,
     tip_speed: float | None,
+    torque: Any,
 ) -> tuple[Limits | None, str | None]:
     """Returns the given limits, and the name of the option that gave the velocity limit."""
     if velocity is not None and velocity_sinusoid is not None:
@@ -189,6 +195,8 @@ def _limits(
         given["jerk"] = limit("--jerk-limit", jerk)
     if tip_speed is not None:
         given["tip_speed"] = tip_speed
+    if torque is not None:
+        given["torque"] = torque
     return Limits(**given) if given else None, limits_from
 
 

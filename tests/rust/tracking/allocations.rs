@@ -47,7 +47,12 @@ const TICKS: usize = if cfg!(debug_assertions) { 100_000 } else { 1_000_000 };
 
 #[test]
 fn a_step_allocates_nothing() {
-    count_allocations(&Robot::named("panda").unwrap(), Surroundings::default(), TICKS);
+    count_allocations(&Robot::named("panda").unwrap(), Surroundings::default(), f64::INFINITY, TICKS);
+}
+
+#[test]
+fn a_step_within_torque_limits_allocates_nothing() {
+    count_allocations(&Robot::named("panda").unwrap(), Surroundings::default(), 0.4, TICKS / 10);
 }
 
 #[test]
@@ -59,13 +64,16 @@ fn a_step_among_obstacles_allocates_nothing() {
         Shape::cuboid(center, [0.1, 0.2, 0.2], None).unwrap()
     });
     let surroundings = Surroundings { obstacles: Some((&boxes).into()), margin: Some(0.01), self_collision: None };
-    count_allocations(&arm, surroundings, TICKS / 20);
+    count_allocations(&arm, surroundings, f64::INFINITY, TICKS / 20);
 }
 
-/// Drives an arm with every option on; the scratch grows in the first tenth of the ticks.
-fn count_allocations(arm: &Robot, surroundings: Surroundings, ticks: usize) {
+/// Drives an arm with every option on, within a part of the torque limits of its maker; the scratch grows in the first tenth of the ticks.
+fn count_allocations(arm: &Robot, surroundings: Surroundings, part: f64, ticks: usize) {
     let wave = Sinusoid { mean: 1.2, amplitude: 0.5, angular_frequency: 2.0, phase: 0.0 };
+    let torques = arm.joints().iter().map(|joint| part * joint.rated_torque).collect();
     let limits = Limits::of(arm)
+        .with_torque_limit(torques)
+        .unwrap()
         .replace(Field::Velocity, vec![Profile::Sinusoid(wave)])
         .and_then(|limits| limits.replace(Field::Acceleration, vec![Profile::Constant(5.0)]))
         .and_then(|limits| limits.replace(Field::Jerk, vec![Profile::Constant(80.0)]))

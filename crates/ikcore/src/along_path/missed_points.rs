@@ -103,7 +103,7 @@ pub(crate) fn missed_points(robot: &Robot, tip_path: &TipPath, seed: u64) -> Res
     }
     let tried = fractions.len().div_ceil(stride);
     let advice = match proven.count + open.count < tried {
-        true => message!["; ", Setting::Breaks],
+        true => message!["; try ", Setting::Breaks],
         false => Message::default(),
     };
     let name = |missed: &Missed| match numbered.is_empty() {

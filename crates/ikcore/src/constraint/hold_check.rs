@@ -2,7 +2,7 @@
 
 use super::joint_torques::{JointTorques, TorquePoint, control_points};
 use super::largest_factor::TIGHT;
-use super::torque_bend::{BendScratch, Rest};
+use super::torque_bend::{BendScratch, HOLD, Rest};
 use crate::math::majorant::Majorant;
 
 /// Most halvings of a line.
@@ -46,7 +46,7 @@ impl<'a> HoldCheck<'a> {
         let is_bounded = self.torques.limits().iter().enumerate().all(|(joint, limit)| {
             let hold = control_points([start[joint], middle[joint], end[joint]]);
             let most = hold.into_iter().fold(0.0_f64, |most, hold| most.max(hold.abs()));
-            most + self.rests[joint][2] + self.torques.friction(joint).dry <= limit * (1.0 - TIGHT)
+            most + self.rests[joint][0] + self.torques.friction(joint).dry <= limit * (1.0 - TIGHT)
         });
         is_bounded
             || depth < DEEPEST
@@ -68,6 +68,6 @@ impl<'a> HoldCheck<'a> {
     fn bound(&mut self, Line { from, to }: &Line<'_>, half: f64) {
         let rates = |joint: usize| Majorant::of([half * (to[joint] - from[joint]).abs()]);
         let farthest = |joint: usize| from[joint].abs().max(to[joint].abs());
-        self.torques.rests(rates, farthest, &mut self.bend, &mut self.rests);
+        self.torques.rests::<HOLD>(rates, farthest, &mut self.bend, &mut self.rests);
     }
 }

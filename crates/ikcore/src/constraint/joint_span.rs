@@ -27,7 +27,13 @@ impl JointSpan {
     }
 
     /// Becomes the interval around `middle`, `half` to either side, of these polynomials.
-    pub fn set(&mut self, robot: &Robot, polynomials: impl Iterator<Item = Coefficients>, [middle, half]: [f64; 2]) {
+    pub fn set(&mut self, robot: &Robot, polynomials: impl Iterator<Item = Coefficients>, interval: [f64; 2]) {
+        self.set_joints(polynomials, interval);
+        robot.write_frames(&self.q, &mut self.frames);
+    }
+
+    /// [`set`](Self::set) for the joints alone: the moving elements stay where they were.
+    pub fn set_joints(&mut self, polynomials: impl Iterator<Item = Coefficients>, [middle, half]: [f64; 2]) {
         for ((joint, q), polynomial) in self.joints.iter_mut().zip(&mut self.q).zip(polynomials) {
             *joint = polynomial;
             for first in 0..POWERS - 1 {
@@ -42,7 +48,6 @@ impl JointSpan {
             }
             *q = joint[0];
         }
-        robot.write_frames(&self.q, &mut self.frames);
     }
 
     /// The motion of the tip that these elements carry.

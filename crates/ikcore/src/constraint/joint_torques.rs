@@ -6,9 +6,11 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::joint_span::JointSpan;
 use super::largest_factor::{IntervalFactor, TIGHT, is_at_most, largest_factor};
-use super::torque_bend::{BendScratch, Rest, TorqueBend};
+use super::torque_bend::{BendScratch, HOLD_AND_SQUARE, Rest, TorqueBend};
 use crate::dynamics::{DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result};
 use crate::limits::ROUNDING;
@@ -68,12 +70,15 @@ impl Friction {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TorqueTerms {
     /// Factors of d2s/dt2.
-    pub of_change: Vec<f64>,
+    pub of_change: ByJoint,
     /// Factors of (ds/dt)^2.
-    pub of_square: Vec<f64>,
+    pub of_square: ByJoint,
     /// What holds the arm.
-    pub hold: Vec<f64>,
+    pub hold: ByJoint,
 }
+
+/// A number for each joint, of most arms without memory of its own.
+type ByJoint = SmallVec<[f64; 8]>;
 
 /// A torque beyond its limit.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +115,7 @@ impl PartialEq for JointTorques {
 
 impl TorqueTerms {
     fn new(joints: usize) -> Self {
-        let zero = vec![0.0; joints];
+        let zero = ByJoint::from_elem(0.0, joints);
         Self { of_change: zero.clone(), of_square: zero.clone(), hold: zero }
     }
 }
@@ -178,6 +183,12 @@ impl JointTorques {
         terms.of_change.iter_mut().zip(&terms.hold).for_each(|(torque, hold)| *torque -= hold);
     }
 
+    /// Writes the torques without friction, with the first two derivatives as velocities and accelerations.
+    pub fn write_torques(&self, at: &mut TorquePoint, torques: &mut [f64]) {
+        self.robot.write_frames(&at.q, &mut at.scratch.frames);
+        self.inverse(at, Derivatives::Both, torques);
+    }
+
     /// Writes what holds the arm at a point.
     pub(super) fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
         self.robot.write_frames(&at.q, &mut at.scratch.frames);
@@ -201,15 +212,15 @@ impl JointTorques {
     }
 
     /// Writes the rests of all joints over an interval on which the derivatives of the joints' positions have these majorants and the joints
-    /// are at most this far from zero.
-    pub fn rests(
+    /// are at most this far from zero; those of other factors than these stay as they are.
+    pub fn rests<const FACTORS: usize>(
         &self,
         rates: impl Fn(usize) -> Majorant,
         farthest: impl Fn(usize) -> f64,
         scratch: &mut BendScratch,
         rests: &mut [Rest],
     ) {
-        self.bend.rests(rates, farthest, scratch, rests);
+        self.bend.rests::<FACTORS>(rates, farthest, scratch, rests);
     }
 
     /// The joint that can hold the arm at `q` (n,) the least, if one cannot.
@@ -262,7 +273,7 @@ impl JointTorques {
     pub fn shares(&self, polynomials: &[Coefficients], t: f64) -> Vec<f64> {
         let (mut point, mut terms) = (self.point(), self.terms());
         let mut span = JointSpan::new(&self.robot);
-        span.set(&self.robot, polynomials.iter().copied(), [t, 1.0]);
+        span.set_joints(polynomials.iter().copied(), [t, 1.0]);
         span.write(0.0, [&mut point.q, &mut point.first, &mut point.second]);
         self.write_hold(&mut point, &mut terms.hold);
         self.write_square(&mut point, &mut terms);
@@ -315,23 +326,26 @@ impl IntervalFactor for TorqueFactor<'_> {
 
     fn over(&mut self, polynomials: &[Coefficients], [middle, half]: [f64; 2]) -> [f64; 2] {
         let Self { torques, judged, span, point, nodes, rests, bend } = self;
-        span.set(&torques.robot, polynomials.iter().copied(), [middle, half]);
+        span.set_joints(polynomials.iter().copied(), [middle, half]);
+        let per_second = 1.0 / half;
         for (x, terms) in [-1.0, 0.0, 1.0].into_iter().zip(nodes.iter_mut()) {
             span.write(x, [&mut point.q, &mut point.first, &mut point.second]);
+            // To seconds before torques are subtracted from one another: the rounding of that would grow without end in short intervals.
+            point.first.iter_mut().for_each(|rate| *rate *= per_second);
+            point.second.iter_mut().for_each(|change| *change *= per_second * per_second);
             torques.write_hold(point, &mut terms.hold);
             torques.write_square(point, terms);
         }
-        torques.rests(|joint| span.rates(joint), |joint| span.farthest(joint), bend, rests);
-        let per_second = half.powi(-2);
+        torques.rests::<HOLD_AND_SQUARE>(|joint| span.rates(joint), |joint| span.farthest(joint), bend, rests);
         let [mut seen, mut bound] = [0.0_f64; 2];
         for (joint, limit) in torques.limits.iter().enumerate() {
             if *limit == f64::INFINITY || matches!(judged, Judged::Share(Some(only)) if *only != joint) {
                 continue;
             }
-            let of_motion = control_points(nodes.each_ref().map(|terms| per_second * terms.of_square[joint]));
+            let of_motion = control_points(nodes.each_ref().map(|terms| terms.of_square[joint]));
             let hold = control_points(nodes.each_ref().map(|terms| terms.hold[joint]));
-            let [_, rest_of_motion, rest_of_hold] = rests[joint];
-            let rest = [per_second * rest_of_motion, rest_of_hold];
+            let [rest_of_hold, rest_of_motion, _] = rests[joint];
+            let rest = [per_second * per_second * rest_of_motion, rest_of_hold];
             let friction = torques.friction(joint);
             let factor = |of_motion: f64, hold: f64, rest: [f64; 2], [slowest, fastest]: [f64; 2]| {
                 let of_side = |sign: f64, rate: f64| {
@@ -344,9 +358,9 @@ impl IntervalFactor for TorqueFactor<'_> {
                 };
                 of_side(1.0, fastest).max(of_side(-1.0, -slowest))
             };
-            let rate = span.rate(joint, 0.0) / half;
-            seen = seen.max(factor(per_second * nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2], [rate; 2]));
-            let rates = span.rate_range(joint).map(|rate| rate / half);
+            let rate = span.rate(joint, 0.0) * per_second;
+            seen = seen.max(factor(nodes[1].of_square[joint], nodes[1].hold[joint], [0.0; 2], [rate; 2]));
+            let rates = span.rate_range(joint).map(|rate| rate * per_second);
             for (of_motion, hold) in of_motion.into_iter().zip(hold) {
                 bound = bound.max(factor(of_motion, hold, rest, rates));
             }

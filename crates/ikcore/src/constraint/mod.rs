@@ -43,4 +43,4 @@ pub(crate) use largest_factor::TIGHT;
 pub(crate) use onto::{KeepTasks, Onto};
 pub(crate) use tip_jet::{SQUARE, TipJet, VectorJet};
 pub(crate) use tip_rates::{TipExcess, TipRates};
-pub(crate) use torque_bend::{BendScratch, Rest};
+pub(crate) use torque_bend::{ALL_FACTORS, BendScratch, HOLD_AND_SQUARE, Rest};

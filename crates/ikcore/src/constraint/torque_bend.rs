@@ -37,8 +37,13 @@ pub(super) struct TorqueBend {
     rotors: Vec<f64>,
 }
 
-/// Largest distances of a joint's torque from parabolas: of the factors of d2s/dt2 and (ds/dt)^2, and of what holds the arm.
+/// Largest distances of a joint's torque from parabolas: of what holds the arm, and of the factors of (ds/dt)^2 and d2s/dt2.
 pub(crate) type Rest = [f64; 3];
+
+/// How many of these factors a call needs.
+pub(super) const HOLD: usize = 1;
+pub(crate) const HOLD_AND_SQUARE: usize = 2;
+pub(crate) const ALL_FACTORS: usize = 3;
 
 /// What is known of a moving frame and of the load on it.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +54,7 @@ struct Motion {
     lever: Majorant,
     mass: f64,
     first: Majorant,
-    /// Force and moment per d2s/dt2, then per (ds/dt)^2.
+    /// Force and moment per (ds/dt)^2, then per d2s/dt2.
     force: [Majorant; 2],
     moment: [Majorant; 2],
 }
@@ -94,9 +99,9 @@ impl TorqueBend {
         BendScratch(vec![Motion::REST; self.stages.len() + 1])
     }
 
-    /// Writes the rests (n,) over an interval \[-1, 1\] on which the derivatives of the joints' positions have these majorants; `farthest`
+    /// Writes the first rests (n,) over an interval \[-1, 1\] on which the derivatives of the joints' positions have these majorants; `farthest`
     /// bounds the positions of slides (m).
-    pub(super) fn rests(
+    pub(super) fn rests<const FACTORS: usize>(
         &self,
         rates: impl Fn(usize) -> Majorant,
         farthest: impl Fn(usize) -> f64,
@@ -105,11 +110,11 @@ impl TorqueBend {
     ) {
         motions[0] = Motion::REST;
         for (i, stage) in self.stages.iter().enumerate() {
-            motions[i + 1] = stage.outward(&motions[stage.parent], &rates, &farthest);
+            motions[i + 1] = stage.outward::<FACTORS>(&motions[stage.parent], &rates, &farthest);
         }
         for (joint, (rest, rotor)) in rests.iter_mut().zip(&self.rotors).enumerate() {
             let rate = rates(joint).scaled(rotor * OFF_PARABOLA);
-            *rest = [rate.coefficient(3), rate.derivative().coefficient(3), 0.0];
+            *rest = [0.0, rate.derivative().coefficient(3), rate.coefficient(3)];
         }
         for (i, stage) in self.stages.iter().enumerate().rev() {
             let motion = motions[i + 1];
@@ -117,18 +122,23 @@ impl TorqueBend {
             let rest = &mut rests[stage.motion.joint];
             let slides = stage.motion.turn_scale == 0.0;
             let load = if slides { motion.force } else { motion.moment };
-            for (rest, load) in rest.iter_mut().zip(&load) {
+            for (rest, load) in rest[1..FACTORS].iter_mut().zip(&load) {
                 *rest += by_stage * motion.axis.times(load).coefficient(3);
             }
             let weight = if slides { motion.axis.scaled(motion.mass) } else { motion.axis.times(&motion.first) };
-            rest[2] += by_stage * self.gravity * weight.coefficient(3);
-            motions[stage.parent].carry(&motion);
+            rest[0] += by_stage * self.gravity * weight.coefficient(3);
+            motions[stage.parent].carry::<FACTORS>(&motion);
         }
     }
 }
 
 impl Stage {
-    fn outward(&self, parent: &Motion, rates: impl Fn(usize) -> Majorant, farthest: impl Fn(usize) -> f64) -> Motion {
+    fn outward<const FACTORS: usize>(
+        &self,
+        parent: &Motion,
+        rates: impl Fn(usize) -> Majorant,
+        farthest: impl Fn(usize) -> f64,
+    ) -> Motion {
         let rate = rates(self.motion.joint).scaled(self.motion.scale().abs());
         let axis = Majorant::carried(&parent.turn, 1.0, &Majorant::ZERO);
         let along = axis.times(&rate);
@@ -138,24 +148,27 @@ impl Stage {
         } else {
             (parent.turn.plus(&along), Majorant::carried(&parent.turn, self.lever, &Majorant::ZERO))
         };
-        let velocity = parent.velocity.plus(&lever.derivative());
         let first = Majorant::carried(&turn, self.first, &Majorant::ZERO);
+        if FACTORS == HOLD {
+            return Motion { turn, axis, lever, mass: self.mass, first, ..Motion::REST };
+        }
+        let velocity = parent.velocity.plus(&lever.derivative());
         let point = Majorant::carried(&turn, 1.0, &Majorant::ZERO);
         let force = velocity.scaled(self.mass).plus(&first.derivative());
         let swing = |change: &Majorant| point.times(change).scaled(self.second);
         let of_point = point.derivative();
-        let moment = [
-            first.times(&velocity).plus(&swing(&of_point)),
-            first.times(&velocity.derivative()).plus(&swing(&of_point.derivative())),
-        ];
-        Motion { turn, velocity, axis, lever, mass: self.mass, first, force: [force, force.derivative()], moment }
+        let of_square = first.times(&velocity.derivative()).plus(&swing(&of_point.derivative()));
+        let of_change =
+            if FACTORS == ALL_FACTORS { first.times(&velocity).plus(&swing(&of_point)) } else { Majorant::ZERO };
+        let [force, moment] = [[force.derivative(), force], [of_square, of_change]];
+        Motion { turn, velocity, axis, lever, mass: self.mass, first, force, moment }
     }
 }
 
 impl Motion {
     /// Adds the load of a child.
-    fn carry(&mut self, child: &Self) {
-        for k in 0..2 {
+    fn carry<const FACTORS: usize>(&mut self, child: &Self) {
+        for k in 0..FACTORS - 1 {
             self.force[k] = self.force[k].plus(&child.force[k]);
             self.moment[k] = self.moment[k].plus(&child.moment[k]).plus(&child.lever.times(&child.force[k]));
         }

@@ -26,6 +26,7 @@ impl Dynamics {
         matrix.resize(n * n, 0.0);
         bias.resize(2 * n, 0.0);
         let (rest, bias_now) = bias.split_at_mut(n);
+        rest.fill(0.0);
         self.inverse(&DynamicState { q, qd, qdd: rest }, &[], scratch, bias_now);
         self.mass_matrix(scratch, &mut matrix);
         for (torque, bias) in torques.iter_mut().zip(&*bias_now) {

@@ -4,6 +4,7 @@ use smallvec::SmallVec;
 
 use super::rigid_bodies::Dynamics;
 use crate::kinematics::link_tree::FrameBuffer;
+use crate::math::Frame;
 use crate::math::f64x4::F64x4;
 
 /// Motion of a body, and the load that its stage passes on.
@@ -30,7 +31,7 @@ impl BodyState {
 }
 
 /// Scratch memory of the kernels, to be reused from call to call.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct DynamicsScratch {
     /// Frames of all stages.
     pub(crate) frames: FrameBuffer,
@@ -45,5 +46,11 @@ impl DynamicsScratch {
     pub(crate) fn new(dynamics: &Dynamics, frames: FrameBuffer) -> Self {
         let states = SmallVec::from_elem(BodyState::REST, dynamics.frames());
         Self { frames, states, matrix: vec![], bias: vec![] }
+    }
+
+    /// Makes room for other bodies, and for as many frames as their kinematic kernels need.
+    pub(crate) fn fit(&mut self, dynamics: &Dynamics, frames: usize) {
+        self.states.resize(dynamics.frames(), BodyState::REST);
+        self.frames.resize(frames, Frame::IDENTITY);
     }
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::math::vector::squared_distance;
 use crate::obstacle::ClearanceSweep;
 use crate::plan::{Deadline, TimedMotion, configuration_at};
-use crate::timing::{ConstantLimits, JointPolyline};
+use crate::timing::{ConstantLimits, JointPolyline, Paced};
 use crate::trajectory::Trajectory;
 
 /// Maximum number of narrowings of blends, before the motion stops at every corner instead.
@@ -19,7 +19,7 @@ pub(super) struct TimedPath {
     pub path: JointPolyline,
     /// The fraction of the shorter adjacent line that each blend takes.
     fractions: Vec<f64>,
-    /// The quicker of its timings with and without stops, not certified.
+    /// The quicker of its timings with and without stops, not certified and without regard to tips and torques: nothing along the path is quicker.
     pub motion: Trajectory,
 }
 
@@ -35,14 +35,9 @@ pub(super) struct Timing<'s, 'a> {
 }
 
 impl TimedPath {
-    /// A straight line, timed by `motion`.
-    pub(super) fn straight(path: JointPolyline, motion: Trajectory) -> Self {
-        Self { fractions: vec![1.0; path.0.len()], path, motion }
-    }
-
     /// Times a path. `fractions[i]` is the fraction of the shorter adjacent line that the blend of point i takes.
     pub(super) fn new(path: JointPolyline, fractions: Vec<f64>, limits: &ConstantLimits) -> Result<Self> {
-        let motion = path.fastest(limits, &fractions)?;
+        let motion = path.fastest_of_joints(limits, &fractions)?;
         Ok(Self { path, fractions, motion })
     }
 }
@@ -66,13 +61,18 @@ impl Timing<'_, '_> {
     /// constraint, or else with a stop at each corner. `None` if a line of the path does.
     pub(super) fn certified(&mut self, timed: TimedPath) -> Result<Option<Trajectory>> {
         let TimedPath { path, mut fractions, motion } = timed;
+        let Paced { motion, is_kept } = if self.limits.limit_whole() {
+            path.fastest(self.limits, &fractions)?
+        } else {
+            Paced { motion, is_kept: true }
+        };
         if let Some(kept) = self.kept.as_mut().filter(|kept| kept.is_narrow) {
             let followed = kept.followed(&motion, self.limits)?;
             return Ok(followed.filter(|motion| self.first_contact(motion).is_none()));
         }
-        let fault = self.first_fault(&motion).or((!self.limits.keep_torque(&motion)).then_some(0.0));
+        let fault = self.first_fault(&motion).or((!is_kept).then_some(0.0));
         let Some(mut fault) = fault else { return Ok(Some(motion)) };
-        let stopping = path.with_stops(self.limits)?;
+        let Paced { motion: stopping, is_kept } = path.with_stops(self.limits)?;
         let mut blended = motion;
         for _ in 0..NARROWINGS {
             if path.0.len() < 3 || self.deadline.is_over() {
@@ -90,7 +90,7 @@ impl Timing<'_, '_> {
                 Some(at) => fault = at,
             }
         }
-        Ok((self.limits.keep_torque(&stopping) && self.first_fault(&stopping).is_none()).then_some(stopping))
+        Ok((is_kept && self.first_fault(&stopping).is_none()).then_some(stopping))
     }
 
     /// The time at which a motion comes too near to something or leaves a constraint (s), if any.

@@ -5,7 +5,6 @@ use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use super::refinement::{BlendedPath, PathMeasure};
 use super::rrt_connect::{Connection, Route, TreeSearch};
-use super::straight_line_plan::straight;
 use crate::error::Result;
 use crate::objective::Point;
 use crate::obstacle::ClearanceSweep;
@@ -123,8 +122,9 @@ impl<'a> PathSearch<'_, 'a> {
                 break;
             }
             if self.trees.check.is_clear(&pair.start, &pair.end) {
-                let motion = straight(pair, self.search.limits)?;
-                if let Some(motion) = self.timing().certified(TimedPath::straight(pair.line(), motion))? {
+                pair.require_motion()?;
+                let line = TimedPath::new(pair.line(), vec![1.0; 2], self.search.limits)?;
+                if let Some(motion) = self.timing().certified(line)? {
                     self.keep(motion, best);
                     return Ok(Some(i));
                 }

@@ -33,7 +33,7 @@ pub(super) fn without_obstacles(search: &mut PairSearch, objective: Cost, monito
 /// Returns the quicker of a quintic and a motion at constant velocity between blends.
 pub(super) fn straight(pair: &EndPair, limits: &ConstantLimits) -> Result<Trajectory> {
     pair.require_motion()?;
-    pair.line().fastest(limits, &[1.0, 1.0])
+    Ok(pair.line().fastest(limits, &[1.0, 1.0])?.motion)
 }
 
 /// The error of a search that found no configuration for an end.

@@ -49,6 +49,11 @@ impl StopCurve {
         self.fading.ticks + self.fade.0
     }
 
+    /// Ticks at which the deceleration is built up, begins to fade, and has faded. In between, its changes are equal.
+    pub fn phase_ends(&self) -> [f64; 3] {
+        [self.built_up.ticks, self.fading.ticks, self.ticks()]
+    }
+
     /// Displacement after this many ticks.
     pub fn at(&self, ticks: f64) -> f64 {
         self.sign * self.along(ticks.min(self.ticks()))

@@ -132,7 +132,15 @@ fn plan_admitted(
 /// violations, through layers of postures.
 fn free_motion(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Plan> {
     let PathProblem { robot, tip_path, options, .. } = problem;
-    let mut followed = timed::along_path(problem, monitor)?;
+    let mut followed = match timed::along_path(problem, monitor) {
+        Err(heavy @ Error::Infeasible { .. }) if problem.limits.limit_torque() => {
+            return clear_path::along_path(problem, None, monitor).map_err(|error| match error {
+                Error::NotFound { .. } | Error::Infeasible { .. } => heavy,
+                other => other,
+            });
+        }
+        other => other?,
+    };
     if let Some(plan) = &mut followed {
         plan.note_kept(problem.keeps.robot, problem.keeps.keeps)?;
     }

@@ -83,6 +83,27 @@ impl Robot {
         Ok(self.with_masses(Masses { gravity, ..(*self.parts().masses).clone() }))
     }
 
+    /// Copy of the robot with masses, payloads and gravity of another with the same links.
+    pub(crate) fn with_masses_of(&self, other: &Self) -> Self {
+        self.with_masses((*other.parts().masses).clone())
+    }
+
+    /// Checks that this robot is `other` but for masses, payloads and gravity.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] names both.
+    pub(crate) fn require_masses_alone_differ(&self, other: &Self) -> Result<()> {
+        if self.with_masses_of(other) == *other {
+            return Ok(());
+        }
+        let problem = format!(
+            "robot '{}' differs from robot '{}' in more than masses, payloads and gravity, which alone may change while it is tracked: begin anew with the other robot",
+            self.name(),
+            other.name()
+        );
+        Err(Error::Contradiction { problem: problem.into() })
+    }
+
     fn folded_dynamics(&self) -> Result<Dynamics> {
         let none = |problem: Message| Error::NoDynamics { robot: self.name().into(), problem };
         let masses = &self.parts().masses;

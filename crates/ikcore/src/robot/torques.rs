@@ -1,12 +1,19 @@
 //! Torques, mass matrices and accelerations, in row-major arrays: one row is one configuration.
 
+use std::cell::Cell;
+
 use super::model::Robot;
 use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;
-use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame};
+
+thread_local! {
+    /// Scratch memory of the last call on this thread: to set up its eight kilobytes takes longer than the torques of one configuration.
+    static IDLE: Cell<Option<Box<DynamicsScratch>>> = const { Cell::new(None) };
+}
 
 /// Motions (m, n) of a robot, row-major: where each joint is, how fast it moves, and how that changes.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +34,15 @@ impl Robot {
         DynamicsScratch::new(dynamics, self.frame_buffer())
     }
 
+    /// Returns what `work` does with scratch memory that is kept for the next call on this thread.
+    fn with_scratch<R>(&self, dynamics: &Dynamics, work: impl FnOnce(&mut DynamicsScratch) -> R) -> R {
+        let mut scratch = IDLE.take().unwrap_or_default();
+        scratch.fit(dynamics, self.tree().frames());
+        let result = work(&mut scratch);
+        IDLE.set(Some(scratch));
+        result
+    }
+
     /// Joint torques (m, n) (N m, or N for prismatic joints) that cause the motions, friction included. At rest they hold the arm up.
     ///
     /// # Errors
@@ -35,33 +51,31 @@ impl Robot {
         let dynamics = self.dynamics()?;
         let rows = self.rows_of("joint angles", motions.q)?;
         let wrenches = self.checked_wrenches(motions, rows.len())?;
-        let mut scratch = self.dynamics_scratch(dynamics);
-        let mut torques = vec![0.0; motions.q.len()];
-        let out = torques.chunks_exact_mut(self.dof());
-        if motions.qd.is_none() && motions.qdd.is_none() && wrenches.is_empty() {
-            for (row, (q, torques)) in rows.zip(out).enumerate() {
-                checkpoint_at(row)?;
-                self.write_frames(q, &mut scratch.frames);
-                dynamics.holding(&mut scratch, torques);
-            }
-            return Ok(torques);
-        }
-        let (rest, length) = (vec![0.0; self.dof()], motions.q.len());
+        let length = motions.q.len();
         motions.qd.map_or(Ok(()), |qd| self.require_rows("joint velocities", qd, length))?;
         motions.qdd.map_or(Ok(()), |qdd| self.require_rows("joint accelerations", qdd, length))?;
-        let (tips, mut applied) = (self.tip_count(), vec![]);
-        for (row, (q, torques)) in rows.zip(out).enumerate() {
-            checkpoint_at(row)?;
-            let state = DynamicState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
-            self.write_frames(q, &mut scratch.frames);
-            applied.clear();
-            let first = if wrenches.len() > tips { row * tips } else { 0 };
-            for (tip, wrench) in wrenches.iter().skip(first).take(tips).enumerate() {
-                applied.push(self.applied_at_tip(tip, wrench, &scratch.frames));
+        let is_held = motions.qd.is_none() && motions.qdd.is_none() && wrenches.is_empty();
+        let (rest, tips, mut applied) = (vec![0.0; self.dof()], self.tip_count(), vec![]);
+        let mut torques = vec![0.0; length];
+        self.with_scratch(dynamics, |scratch| {
+            for (row, (q, torques)) in rows.zip(torques.chunks_exact_mut(self.dof())).enumerate() {
+                checkpoint_at(row)?;
+                self.write_frames(q, &mut scratch.frames);
+                if is_held {
+                    dynamics.holding(scratch, torques);
+                    continue;
+                }
+                let state =
+                    DynamicState { q, qd: row_or(&rest, motions.qd, row), qdd: row_or(&rest, motions.qdd, row) };
+                applied.clear();
+                let first = if wrenches.len() > tips { row * tips } else { 0 };
+                for (tip, wrench) in wrenches.iter().skip(first).take(tips).enumerate() {
+                    applied.push(self.applied_at_tip(tip, wrench, &scratch.frames));
+                }
+                dynamics.inverse(&state, &applied, scratch, torques);
             }
-            dynamics.inverse(&state, &applied, &mut scratch, torques);
-        }
-        Ok(torques)
+            Ok(torques)
+        })
     }
 
     /// Mass matrices (m, n, n) at `qs` (m, n), rotors included (kg m^2; rows and columns of prismatic joints kg m and kg).
@@ -70,15 +84,16 @@ impl Robot {
     /// As [`torques_all`](Self::torques_all).
     pub fn mass_matrix_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let dynamics = self.dynamics()?;
-        let mut scratch = self.dynamics_scratch(dynamics);
-        let mut matrices = vec![0.0; qs.len() * self.dof()];
-        let each = self.rows(qs)?.zip(matrices.chunks_exact_mut(self.dof() * self.dof()));
-        for (row, (q, matrix)) in each.enumerate() {
-            checkpoint_at(row)?;
-            self.write_frames(q, &mut scratch.frames);
-            dynamics.mass_matrix(&mut scratch, matrix);
-        }
-        Ok(matrices)
+        let (rows, n) = (self.rows(qs)?, self.dof());
+        let mut matrices = vec![0.0; qs.len() * n];
+        self.with_scratch(dynamics, |scratch| {
+            for (row, (q, matrix)) in rows.zip(matrices.chunks_exact_mut(n * n)).enumerate() {
+                checkpoint_at(row)?;
+                self.write_frames(q, &mut scratch.frames);
+                dynamics.mass_matrix(scratch, matrix);
+            }
+            Ok(matrices)
+        })
     }
 
     /// Joint accelerations (m, n) (rad/s^2, m/s^2) that the `torques` (m, n) cause at `qs` and `qds`, both (m, n): the inverse of
@@ -91,18 +106,20 @@ impl Robot {
         let rows = self.rows(qs)?;
         self.require_rows("joint velocities", qds, qs.len())?;
         self.require_rows("joint torques", torques, qs.len())?;
-        let mut scratch = self.dynamics_scratch(dynamics);
         let (n, mut accelerations) = (self.dof(), torques.to_vec());
-        for (row, ((q, qd), out)) in rows.zip(qds.chunks_exact(n)).zip(accelerations.chunks_exact_mut(n)).enumerate() {
-            checkpoint_at(row)?;
-            self.write_frames(q, &mut scratch.frames);
-            dynamics.forward([q, qd], &mut scratch, out).map_err(|joint| Error::SingularMassMatrix {
-                robot: self.name().into(),
-                row,
-                joint: self.joints()[joint].name.clone(),
-            })?;
-        }
-        Ok(accelerations)
+        let each = rows.zip(qds.chunks_exact(n));
+        self.with_scratch(dynamics, |scratch| {
+            for (row, ((q, qd), out)) in each.zip(accelerations.chunks_exact_mut(n)).enumerate() {
+                checkpoint_at(row)?;
+                self.write_frames(q, &mut scratch.frames);
+                dynamics.forward([q, qd], scratch, out).map_err(|joint| Error::SingularMassMatrix {
+                    robot: self.name().into(),
+                    row,
+                    joint: self.joints()[joint].name.clone(),
+                })?;
+            }
+            Ok(accelerations)
+        })
     }
 
     /// Centres of mass (m, 3) of all links at `qs` (m, n), in the frame of the base (m); links that stand still and payloads count.
@@ -111,15 +128,34 @@ impl Robot {
     /// As [`torques_all`](Self::torques_all).
     pub fn center_of_mass_all(&self, qs: &[f64]) -> Result<Vec<f64>> {
         let dynamics = self.dynamics()?;
-        let mut scratch = self.dynamics_scratch(dynamics);
         let rows = self.rows(qs)?;
         let mut centers = Vec::with_capacity(3 * rows.len());
-        for (row, q) in rows.enumerate() {
-            checkpoint_at(row)?;
+        self.with_scratch(dynamics, |scratch| {
+            for (row, q) in rows.enumerate() {
+                checkpoint_at(row)?;
+                self.write_frames(q, &mut scratch.frames);
+                centers.extend(dynamics.center_of_mass_and_rates(&scratch.frames, &mut []));
+            }
+            Ok(centers)
+        })
+    }
+
+    /// A frame at the centre of mass in the axes of the base, and its Jacobian (n,), whose angular rows are zero. The robot has dynamics:
+    /// the base is the centre of one that has none.
+    pub(crate) fn center_of_mass_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        columns.fit(q.len());
+        columns[..q.len()].fill([0.0; 6]);
+        self.frame_at_center_of_mass(q, &mut columns[..q.len()])
+    }
+
+    /// A frame at the centre of mass in the axes of the base; adds the velocity of the centre to `columns`.
+    pub(crate) fn frame_at_center_of_mass(&self, q: &[f64], columns: &mut [[f64; 6]]) -> Frame {
+        let Ok(dynamics) = self.dynamics() else { return Frame::IDENTITY };
+        let origin = self.with_scratch(dynamics, |scratch| {
             self.write_frames(q, &mut scratch.frames);
-            centers.extend(dynamics.center_of_mass(&mut scratch));
-        }
-        Ok(centers)
+            dynamics.center_of_mass_and_rates(&scratch.frames, columns)
+        });
+        Frame { origin, ..Frame::IDENTITY }
     }
 
     /// Checks that `values` has one complete and finite row for each of q, which has this length.

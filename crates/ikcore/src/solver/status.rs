@@ -71,6 +71,8 @@ statuses! {
         "A step of a track in which what is to be kept holds the tip away from the target; the arm keeps it at every instant.";
     LevelGivenUp = 19, "LEVEL_GIVEN_UP":
         "The tasks of the lowest level are within their tolerances, those of a higher level as near as the search found; a configuration that meets all was not found.";
+    HeldByTorque = 20, "HELD_BY_TORQUE":
+        "A step of a track in which a torque limit holds the tip away from the target: a joint could not move or hold the arm farther on, or carries more than it can.";
 }
 
 impl Status {
@@ -96,6 +98,9 @@ impl Status {
             Self::HeldByObstacle => "move the target or what is in the way, lower the margin, or plan a way round",
             Self::HeldByConstraint => {
                 "move the target to where everything can be kept, or widen a tolerance of what is kept"
+            }
+            Self::HeldByTorque => {
+                "move the target to where the joints can hold the arm, lighten the payload, or raise the torque limit"
             }
             Self::RotationGivenUp => {
                 "turn the target, give the rotation a tolerance, or take a task that leaves it free, such as Position or Pointing"

@@ -144,6 +144,16 @@ impl JointPath {
         ]
     }
 
+    /// Writes the positions of all joints and their first and second derivatives by the path parameter, at `from` within a piece.
+    pub(super) fn write(&self, piece: usize, from: f64, [q, first, second]: [&mut [f64]; 3]) {
+        let [c0, c1, c2, c3] = self.powers(piece);
+        for j in 0..c0.len() {
+            q[j] = c0[j] + from * (c1[j] + from * (c2[j] + from * c3[j]));
+            first[j] = c1[j] + from * (2.0 * c2[j] + from * 3.0 * c3[j]);
+            second[j] = 2.0 * c2[j] + 6.0 * from * c3[j];
+        }
+    }
+
     /// Writes the position of all joints (rad or m) at the path parameter `s`, clamped to the path.
     pub fn position(&self, s: f64, q: &mut [f64]) {
         let (piece, from) = self.locate(s);

@@ -35,49 +35,77 @@ impl BlendTimes {
     }
 }
 
+/// A motion within limits of tips and torques.
+#[derive(Debug)]
+pub(crate) struct Paced {
+    pub motion: Trajectory,
+    /// Whether it keeps them: a joint that cannot hold the arm exceeds its limit however slow the motion is.
+    pub is_kept: bool,
+}
+
 impl JointPolyline {
     /// Returns the faster of the motions with stops and with blends.
-    pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
-        let stopping = self.with_stops(limits)?;
-        match self.with_free_blends(limits, fractions).transpose()? {
-            Some(blended) => {
-                let blended = self.paced(blended, limits)?;
-                Ok(if blended.duration() < stopping.duration() { blended } else { stopping })
-            }
-            None => Ok(stopping),
+    pub(crate) fn fastest(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Paced> {
+        let stopping = self.stopping(limits)?;
+        let Some(blended) = self.with_free_blends(limits, fractions).transpose()? else {
+            return self.paced(stopping, limits);
+        };
+        let blended = self.paced(blended, limits)?;
+        // Limits of tips and torques can only slow the other one down.
+        if blended.motion.duration() < stopping.duration() {
+            return Ok(blended);
         }
+        let stopping = self.paced(stopping, limits)?;
+        Ok(if blended.motion.duration() < stopping.motion.duration() { blended } else { stopping })
+    }
+
+    /// Returns the faster of the motions with stops and with blends, without regard to limits of tips and torques.
+    pub(crate) fn fastest_of_joints(&self, limits: &ConstantLimits, fractions: &[f64]) -> Result<Trajectory> {
+        let stopping = self.stopping(limits)?;
+        let blended = self.with_free_blends(limits, fractions).transpose()?;
+        Ok(blended.filter(|blended| blended.duration() < stopping.duration()).unwrap_or(stopping))
     }
 
     /// Moves from rest to rest along each line, stopping at every point: by a quintic, or as fast as jerk limits allow.
-    pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Trajectory> {
-        if limits.limit_jerk() {
-            return self.with_stops_and_jerk(limits);
-        }
-        self.paced(self.with_quintics(limits)?, limits)
+    pub(crate) fn with_stops(&self, limits: &ConstantLimits) -> Result<Paced> {
+        self.paced(self.stopping(limits)?, limits)
+    }
+
+    /// [`with_stops`](Self::with_stops) without regard to tips and torques.
+    fn stopping(&self, limits: &ConstantLimits) -> Result<Trajectory> {
+        if limits.limit_jerk() { self.with_stops_and_jerk(limits) } else { self.with_quintics(limits) }
     }
 
     /// Returns `motion`, made for these lines, within the limits of tips and torques: slowed down as a whole or, if accelerations may jump, the fastest motion
     /// along the lines, which slows down where they bind. Neither is faster than `motion`, so that looser limits are never slower.
-    fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Trajectory> {
+    fn paced(&self, motion: Trajectory, limits: &ConstantLimits) -> Result<Paced> {
         if limits.keep_whole(&motion) {
-            return Ok(motion);
+            return Ok(Paced { motion, is_kept: true });
         }
         let may_jump = !limits.limit_jerk() && limits.require_accelerations("lines").is_ok();
-        let is_one_line = self.0.len() == 2;
         // Along a single line no motion is faster than the fastest along it.
-        let slowed = if may_jump && is_one_line { None } else { Some(limits.slowed_as_a_whole(motion.clone())?) };
-        if !may_jump {
-            return Ok(slowed.unwrap_or(motion));
-        }
+        let as_a_whole = if may_jump && self.0.len() == 2 { None } else { limits.slowed_if_held(&motion)? };
+        let duration = as_a_whole.as_ref().map_or(f64::INFINITY, Trajectory::duration);
+        let may_be_faster = may_jump && duration > self.least_with_stops(limits);
+        let along = if may_be_faster { self.along(limits, motion.duration())? } else { None };
+        let paced = along.filter(|along| along.duration() < duration).or(as_a_whole);
+        let is_kept = paced.is_some();
+        Ok(Paced { motion: paced.unwrap_or(motion), is_kept })
+    }
+
+    /// The fastest motion along the lines, which stops at each point, but none faster than `least` (s); `None` if a joint cannot hold the arm.
+    fn along(&self, limits: &ConstantLimits, least: f64) -> Result<Option<Trajectory>> {
         let along = match time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default()) {
-            Ok(along) => along,
-            // A joint cannot hold the arm.
-            Err(Error::Infeasible { .. }) if limits.limit_torque() => return Ok(slowed.unwrap_or(motion)),
-            Err(error) => return Err(error),
+            Err(Error::Infeasible { .. }) if limits.limit_torque() => return Ok(None),
+            other => other?,
         };
-        let ahead = motion.duration() / along.duration();
-        let along = if ahead > 1.0 { along.slowed(ahead)? } else { along };
-        Ok(slowed.filter(|slowed| slowed.duration() <= along.duration()).unwrap_or(along))
+        let ahead = least / along.duration();
+        Ok(Some(if ahead > 1.0 { along.slowed(ahead)? } else { along }))
+    }
+
+    /// A duration (s) that no motion with stops at all points falls short of, whatever limits tips and torques have.
+    fn least_with_stops(&self, limits: &ConstantLimits) -> f64 {
+        self.0.windows(2).map(|line| line_profile(line, limits).duration).sum()
     }
 
     /// Moves from rest to rest along each line by a quintic.
@@ -293,7 +321,7 @@ mod tests {
                 for tie in [1.0, 0.5, 2.0] {
                     let jerk = tie * acceleration * acceleration / velocity;
                     let limits = limits(velocity, acceleration).with_jerk(jerk);
-                    let motion = corner().with_stops(&limits).unwrap();
+                    let motion = corner().with_stops(&limits).unwrap().motion;
                     let reached = [motion.max_velocity(), motion.max_acceleration(), motion.max_jerk()];
                     let parts = reached.map(|reached| reached.into_iter().fold(0.0, f64::max));
                     for (part, limit) in parts.iter().zip([velocity, acceleration, jerk]) {
@@ -311,7 +339,7 @@ mod tests {
         // By speed: 15/8 of the mean speed; by acceleration: 10 / sqrt(3) of displacement / duration^2.
         for (velocity, acceleration, expected) in [(0.5, 1e3, 3.75), (1e3, 2.0, (10.0 / 3.0_f64.sqrt() / 2.0).sqrt())] {
             let limits = limits(velocity, acceleration);
-            let motion = line.with_stops(&limits).unwrap();
+            let motion = line.with_stops(&limits).unwrap().motion;
             assert!((motion.duration() - expected).abs() < 1e-9, "{}", motion.duration());
             assert_eq!(limits.violations(&motion), []);
             let reach = limits.quintic_reach(1, motion.duration());
@@ -323,7 +351,7 @@ mod tests {
     fn motions_keep_the_limits_and_one_of_them_is_reached() {
         for (velocity, acceleration) in [(1.0, 4.0), (1.0, 0.5), (3.0, 1.0)] {
             let limits = limits(velocity, acceleration);
-            let stopping = corner().with_stops(&limits).unwrap();
+            let stopping = corner().with_stops(&limits).unwrap().motion;
             let blended = corner().with_blends(&limits, &[1.0; 4]).unwrap().unwrap();
             for motion in [&stopping, &blended] {
                 assert_eq!(limits.violations(motion), []);

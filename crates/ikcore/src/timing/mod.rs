@@ -55,6 +55,7 @@ pub use crate::math::cubic_spline::SplineEnds;
 pub use constant_limits::ConstantLimits;
 pub use joint_path::JointPath;
 pub(crate) use limit_share::OneLimit;
+pub(crate) use line_timing::Paced;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
 pub use recorded_noise::{RecordedNoise, recorded_noise};

@@ -14,7 +14,7 @@ use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
 use super::strips::Strips;
 use super::tip_segments::TipSegments;
-use super::torque_segments::{KnownTorques, TorqueBounds, torque_bounds};
+use super::torque_segments::{SegmentTorques, TorqueSegments};
 use super::velocity_curve::maximum_velocity_curve;
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
@@ -31,7 +31,7 @@ pub(super) struct SpeedProfile {
 }
 
 impl SpeedProfile {
-    /// Computes the fastest profile on these `segments` that starts and ends in these ranges; `known` keeps what other grids can use.
+    /// Computes the fastest profile on these `segments` that starts and ends in these ranges, within limits of torques if there are any.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if the speeds at the ends are not possible, or a joint cannot hold the arm.
@@ -40,7 +40,7 @@ impl SpeedProfile {
         limits: &ConstantLimits,
         segments: Vec<Segment>,
         [start, end]: [Range; 2],
-        known: &mut KnownTorques,
+        torques: Option<&mut TorqueSegments<'_>>,
     ) -> Result<Self> {
         let mut derivatives = PathDerivatives::new(path.joints().len());
         let mut strips = Strips::new(path.joints().len());
@@ -48,7 +48,7 @@ impl SpeedProfile {
         let tips = limits.tips.as_ref().map(|rates| TipSegments::new(path, &segments, rates)).transpose()?;
         let velocity_curve = maximum_velocity_curve(path, limits, &segments, tips.as_ref(), &mut derivatives);
         let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
-        let torques = torque_bounds(path, &segments, &velocity_curve, limits, known)?;
+        let torques = torques.map_or(Ok(&[][..]), |torques| torques.over(&segments, &velocity_curve))?;
         let (derivatives, strips, segments_of) = (&mut derivatives, &mut strips, &segments[..]);
         let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips };
         let controllable = pass.backward(velocity_curve, end)?;
@@ -74,8 +74,8 @@ struct Pass<'a> {
     segments: &'a [Segment],
     /// Tips whose acceleration is limited.
     tips: Option<TipSegments<'a>>,
-    /// Bounds of torques by segment; empty without.
-    torques: Vec<Rc<TorqueBounds>>,
+    /// Torques by segment; empty without limits.
+    torques: &'a [Rc<SegmentTorques>],
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
 }
@@ -90,7 +90,7 @@ impl Pass<'_> {
             self.strips.add(tips, i);
         }
         if let Some(torques) = self.torques.get(i) {
-            self.strips.bound(torques);
+            self.strips.bound(&torques.bounds);
         }
         segment
     }

@@ -8,7 +8,7 @@ use super::joint_path::{JointPath, PathEnd};
 use super::reachability::{Range, SpeedProfile};
 use super::refine::refine;
 use super::time_scaling::without_rounding;
-use super::torque_segments::KnownTorques;
+use super::torque_segments::TorqueSegments;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
 
@@ -47,8 +47,9 @@ pub fn time_optimal(path: &JointPath, limits: &ConstantLimits, options: &TimingO
 pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     let ends =
         [end_range(path, options.start_speed, PathEnd::Start)?, end_range(path, options.end_speed, PathEnd::End)?];
-    let mut known = KnownTorques::default();
-    let mut fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends, &mut known);
+    let is_refined = options.gridpoints.is_none() && !limits.limit_jerk();
+    let mut torques = TorqueSegments::new(path, limits, is_refined);
+    let mut fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends, torques.as_mut());
     let profile = match options.gridpoints {
         Some(gridpoints) => {
             check_gridpoints(gridpoints)?;
@@ -92,8 +93,7 @@ pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Re
     let limits = &limits.without_torque();
     let of_path = |path: &JointPath| {
         let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-        let profile =
-            SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends, &mut KnownTorques::default())?;
+        let profile = SpeedProfile::fastest(path, limits, cut(path, SEGMENTS_FOR_JERK), ends, None)?;
         Ok(jerk_limited::rough(path, &profile, limits)?.duration())
     };
     paths.iter().map(of_path).sum()
@@ -106,8 +106,7 @@ pub(crate) fn rough_duration(paths: &[JointPath], limits: &ConstantLimits) -> Re
 /// None in practice: a motion from rest to rest always exists.
 pub(crate) fn coarse_duration(path: &JointPath, limits: &ConstantLimits, segments: usize) -> Result<f64> {
     let ends = [end_range(path, 0.0, PathEnd::Start)?, end_range(path, 0.0, PathEnd::End)?];
-    let profile =
-        SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends, &mut KnownTorques::default())?;
+    let profile = SpeedProfile::fastest(path, &limits.without_torque(), cut(path, segments), ends, None)?;
     Ok(profile.duration())
 }
 

@@ -3,7 +3,6 @@
 //! Along a path the torque of a joint is a(s) u + b(s) x + g(s), where x grows by 2 u s. Over a segment a, b and g are parabolas up to rests; so the
 //! torque is a cubic, and bounds on its four Bernstein coefficients bound it at every point.
 
-use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
@@ -11,7 +10,7 @@ use super::constant_limits::ConstantLimits;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use crate::constraint::{
-    BendScratch, Drag, JointTorques, Rest, TIGHT, TooHeavy, TorquePoint, TorqueTerms, control_points,
+    ALL_FACTORS, BendScratch, Drag, JointTorques, Rest, TIGHT, TooHeavy, TorquePoint, TorqueTerms, control_points,
 };
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
@@ -19,29 +18,18 @@ use crate::math::majorant::Majorant;
 use crate::trajectory::{derivative_bounds, polynomial};
 use crate::wording::number;
 
-/// A segment is halved until the rests are at most this part of a limit: so small that a finer grid, on which they are smaller, saves no time by them.
+/// On a grid that stays as it is, a segment is halved until the rests are at most this part of a limit. On one that is refined they fall with it.
 const NEGLIGIBLE: f64 = 3e-4;
 
 /// Most halvings of a segment: for small rests, and where a joint can hardly hold the arm.
 const DEEP: usize = 5;
 const DEEPEST: usize = 12;
 
+/// Bounds hold for u and x beyond what the segment allows by this factor, so that they serve its parts too.
+const ROOM: f64 = 1.25;
+
 /// A half-plane a u + b x <= c, with positive c.
 type HalfPlane = [f64; 3];
-
-/// Torques over a part of a segment.
-#[derive(Debug)]
-struct Part {
-    /// Start and length, in the parameter since the start of the segment.
-    from: f64,
-    length: f64,
-    /// At the start, in the middle and at the end.
-    terms: [TorqueTerms; 3],
-    /// By joint.
-    rests: Vec<Rest>,
-    /// Friction against positive and against negative torques, by joint.
-    drags: Vec<[Drag; 2]>,
-}
 
 /// Bounds on u over a segment where x grows by 2 u from its start on.
 #[derive(Debug)]
@@ -52,118 +40,115 @@ pub(super) struct TorqueBounds {
     pub largest_x: f64,
 }
 
-/// Segments that were met before, by piece, start, length and largest x: a grid that is refined keeps most of them.
-pub(super) type KnownTorques = HashMap<(usize, [u64; 3]), Rc<TorqueBounds>>;
-
-/// A part that is not finished: its ends, and the terms there.
-struct Open {
-    ends: [f64; 2],
-    terms: [TorqueTerms; 2],
-    halvings: usize,
+/// Torques over one segment.
+#[derive(Debug)]
+pub(super) struct SegmentTorques {
+    segment: Segment,
+    pub bounds: TorqueBounds,
+    /// Largest u and x for which the bounds hold.
+    most: [f64; 2],
+    /// At the start, in the middle and at the end.
+    nodes: [Rc<TorqueTerms>; 3],
+    /// Rests over a part of unit length, by joint.
+    rests: Rc<[Rest]>,
 }
 
-/// Path, limits and scratch memory.
-struct Builder<'a> {
+/// Torques over the segments of a grid, and of grids that refine it.
+#[derive(Debug)]
+pub(super) struct TorqueSegments<'a> {
     path: &'a JointPath,
     limits: &'a ConstantLimits,
     torques: &'a JointTorques,
+    /// The rests that are not worth halving a segment for, as a part of a limit.
+    negligible: f64,
     point: TorquePoint,
     bend: BendScratch,
-    /// Where the last segment ends, in a piece, and the terms there.
-    last: Option<(usize, f64, TorqueTerms)>,
+    /// Those of the last grid; one without bounds may stand for several segments.
+    last: Vec<Rc<SegmentTorques>>,
 }
 
-/// Returns the bounds by joint torques over these segments of `path`, at whose ends x is at most that of `curve`; none without limits.
-///
-/// # Errors
-/// [`Error::Infeasible`] where a joint cannot hold the arm; [`Error::Interrupted`].
-pub(super) fn torque_bounds(
-    path: &JointPath,
-    segments: &[Segment],
-    curve: &[f64],
-    limits: &ConstantLimits,
-    known: &mut KnownTorques,
-) -> Result<Vec<Rc<TorqueBounds>>> {
-    let Some(torques) = &limits.torques else { return Ok(vec![]) };
-    let (point, bend) = (torques.point(), torques.bend_scratch());
-    let mut builder = Builder { path, limits, torques, point, bend, last: None };
-    let mut all = Vec::with_capacity(segments.len());
-    for (i, segment) in segments.iter().enumerate() {
-        checkpoint_at(i)?;
-        let largest_x = curve[i].max(curve[i + 1]);
-        let key = (segment.piece, [segment.from, segment.length, largest_x].map(f64::to_bits));
-        let bounds = match known.get(&key) {
-            Some(bounds) => Rc::clone(bounds),
-            None => {
-                let bounds = Rc::new(builder.bounds(segment, largest_x)?);
-                known.insert(key, Rc::clone(&bounds));
-                bounds
-            }
-        };
-        all.push(bounds);
+/// A part of a segment.
+#[derive(Clone, Copy)]
+struct Part<'n> {
+    /// In the parameter since the start of the segment.
+    ends: [f64; 2],
+    nodes: [&'n TorqueTerms; 3],
+    halvings: usize,
+}
+
+impl SegmentTorques {
+    /// Whether the segment ends before the middle of `other`.
+    fn is_before(&self, other: &Segment) -> bool {
+        let Segment { piece, from, length } = self.segment;
+        (piece, from + length) < (other.piece, other.from + 0.5 * other.length)
     }
-    Ok(all)
+
+    /// Whether this is all that is needed of a segment inside this one, up to these u and x.
+    fn serve(&self, segment: &Segment, most: [f64; 2]) -> bool {
+        let is_within = most[0] <= self.most[0] && most[1] <= self.most[1];
+        is_within && (self.segment == *segment || self.bounds.are_none())
+    }
+
+    /// The terms at a place in a piece, if they are known.
+    fn node(&self, piece: usize, s: f64) -> Option<&Rc<TorqueTerms>> {
+        let Segment { from, length, .. } = self.segment;
+        let places = [from, from + 0.5 * length, from + length];
+        let k = places.iter().position(|place| *place == s && piece == self.segment.piece)?;
+        Some(&self.nodes[k])
+    }
 }
 
-impl TorqueBounds {
-    /// Bounds inside these half-planes. Those that hold for all u and x up to these are left out.
-    fn new(half_planes: impl Iterator<Item = HalfPlane>, [largest_u, largest_x]: [f64; 2]) -> Self {
-        let binds = |[a, b, c]: &HalfPlane| !(a.abs() * largest_u + b.max(0.0) * largest_x <= *c);
-        let binding: Vec<HalfPlane> = half_planes.filter(binds).collect();
-        let steepest = binding.iter().fold(0.0_f64, |largest, [a, ..]| largest.max(a.abs()));
-        let mut bounds = Self { lines: [vec![], vec![]], largest_x: f64::INFINITY };
-        for [a, b, c] in binding {
-            if a.abs() <= NEGLIGIBLE_SLOPE * steepest {
-                bounds.largest_x = bounds.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
-            } else {
-                bounds.lines[usize::from(a < 0.0)].push(Line { offset: c / a, slope: b / a });
+impl<'a> TorqueSegments<'a> {
+    /// The torques along `path` on grids that are refined, or on one that is not; `None` without limits.
+    pub(super) fn new(path: &'a JointPath, limits: &'a ConstantLimits, is_refined: bool) -> Option<Self> {
+        let torques = limits.torques.as_ref()?;
+        let negligible = if is_refined { f64::INFINITY } else { NEGLIGIBLE };
+        let (point, bend) = (torques.point(), torques.bend_scratch());
+        Some(Self { path, limits, torques, negligible, point, bend, last: vec![] })
+    }
+
+    /// Returns the torques over these segments, at whose ends x is at most that of `curve`.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] where a joint cannot hold the arm; [`Error::Interrupted`].
+    pub(super) fn over(&mut self, segments: &[Segment], curve: &[f64]) -> Result<&[Rc<SegmentTorques>]> {
+        let coarse = std::mem::take(&mut self.last);
+        let mut all: Vec<Rc<SegmentTorques>> = Vec::with_capacity(segments.len());
+        let mut k = 0;
+        for (i, (segment, curve)) in segments.iter().zip(curve.windows(2)).enumerate() {
+            checkpoint_at(i)?;
+            while coarse.get(k).is_some_and(|coarse| coarse.is_before(segment)) {
+                k += 1;
             }
+            let largest_x = curve[0].max(curve[1]);
+            let most = [self.largest_u(segment, largest_x), largest_x];
+            all.push(match coarse.get(k) {
+                Some(coarse) if coarse.serve(segment, most) => Rc::clone(coarse),
+                coarse => Rc::new(self.of_segment(segment, most, [coarse, all.last()])?),
+            });
         }
-        bounds
+        self.last = all;
+        Ok(&self.last)
     }
-}
 
-impl Part {
-    /// The half-planes in which a joint keeps its limit.
-    fn half_planes(&self, joint: usize, limit: f64) -> impl Iterator<Item = HalfPlane> + use<> {
-        let of =
-            |term: fn(&TorqueTerms) -> &[f64]| control_points(self.terms.each_ref().map(|terms| term(terms)[joint]));
-        let [a, b, g] = [of(|terms| &terms.of_change), of(|terms| &terms.of_square), of(|terms| &terms.hold)];
-        let [rest_a, rest_b, rest_g] = self.rests[joint];
-        let to = self.from + self.length;
-        // x(s) = x + 2 u s, and s times a parabola is a cubic.
-        let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [self.from, to]));
-        let rest_a = rest_a + 2.0 * to * rest_b;
-        let drags = self.drags[joint];
-        // Friction counts (ds/dt)^2 = x + 2 u s as x and as u.
-        (0..4).flat_map(move |i| {
-            let (a, b, g) = (a[i] + 2.0 * slope[i], b[i], g[i]);
-            [1.0, -1.0].into_iter().zip(drags).flat_map(move |(side, drag)| {
-                let c = limit - side * g - rest_g - drag.at_rest;
-                let rest_a = rest_a + 2.0 * to * drag.per_square;
-                [rest_a, -rest_a].map(|rest| [side * a + rest, side * b + rest_b + drag.per_square, c])
-            })
-        })
-    }
-}
-
-impl Builder<'_> {
-    fn bounds(&mut self, segment: &Segment, largest_x: f64) -> Result<TorqueBounds> {
-        let start = match self.last.take() {
-            Some((piece, from, terms)) if piece == segment.piece && from == segment.from => terms,
-            _ => self.terms(segment, 0.0)?,
+    /// The torques over a segment where u and x are at most `most`, by what is known of one that contains it and of the one before.
+    fn of_segment(
+        &mut self,
+        segment: &Segment,
+        most: [f64; 2],
+        known: [Option<&Rc<SegmentTorques>>; 2],
+    ) -> Result<SegmentTorques> {
+        let mut node = |at: f64| {
+            let same = known.iter().flatten().find_map(|known| known.node(segment.piece, segment.from + at));
+            same.map_or_else(|| Ok(Rc::new(self.terms_at(segment, at)?)), |terms| Ok(Rc::clone(terms)))
         };
-        let end = self.terms(segment, segment.length)?;
-        self.last = Some((segment.piece, segment.from + segment.length, end.clone()));
-        let terms = [start, end];
-        let most = [self.largest_u(segment, largest_x), largest_x];
-        let mut parts = Vec::with_capacity(1);
-        self.push(segment, most, Open { ends: [0.0, segment.length], terms, halvings: 0 }, &mut parts)?;
-        let limited = self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite());
-        let half_planes = limited.flat_map(|(joint, limit)| {
-            parts.iter().flat_map(move |part| part.half_planes(joint, limit * (1.0 - TIGHT)))
-        });
-        Ok(TorqueBounds::new(half_planes, most))
+        let nodes = [node(0.0)?, node(0.5 * segment.length)?, node(segment.length)?];
+        let rests = known[0].map_or_else(|| self.rests_of_unit(segment), |coarse| Rc::clone(&coarse.rests));
+        let most = most.map(|most| ROOM * most);
+        let whole = Part { ends: [0.0, segment.length], nodes: nodes.each_ref().map(|node| &**node), halvings: 0 };
+        let mut half_planes = vec![];
+        self.push((segment, most, &rests), whole, &mut half_planes)?;
+        Ok(SegmentTorques { segment: *segment, bounds: TorqueBounds::new(half_planes), most, nodes, rests })
     }
 
     /// A bound of u by the acceleration limits at the start of a segment: |q' u + q'' x| is at most the acceleration.
@@ -175,40 +160,59 @@ impl Builder<'_> {
         (0..self.torques.dof()).map(of_joint).filter(|u| !u.is_nan()).fold(f64::INFINITY, f64::min)
     }
 
-    fn push(&mut self, segment: &Segment, fastest: [f64; 2], open: Open, parts: &mut Vec<Part>) -> Result<()> {
-        let Open { ends: [from, to], terms: [start, end], halvings } = open;
-        let half = from + 0.5 * (to - from);
-        let middle = self.terms(segment, half)?;
-        let rests = self.rests(segment, [from, to]);
+    /// Adds the half-planes in which the torques over a part of a segment are kept while u and x are at most `most`.
+    fn push(
+        &mut self,
+        (segment, most, rests): (&Segment, [f64; 2], &[Rest]),
+        part: Part<'_>,
+        half_planes: &mut Vec<HalfPlane>,
+    ) -> Result<()> {
+        let Part { ends: [from, to], nodes, halvings } = part;
+        // Rests grow with the third power of the length.
+        let cube = (to - from).powi(3);
+        let rest_of = |joint: usize| rests[joint].map(|rest| rest * cube);
         let (mut holds, mut is_tight) = (true, true);
-        for (joint, limit) in self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
-            let hold = control_points([&start, &middle, &end].map(|terms| terms.hold[joint]));
-            let largest = hold.into_iter().fold(0.0_f64, |largest, hold| largest.max(hold.abs()));
-            let [of_change, of_square, of_hold] = rests[joint];
-            holds &= largest + of_hold + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
-            let rest = of_change * fastest[0] + of_square * fastest[1] + of_hold;
-            is_tight &= !(rest > NEGLIGIBLE * limit);
+        for (joint, limit) in self.limited() {
+            let [of_hold, of_square, of_change] = rest_of(joint);
+            let largest = largest(nodes, joint, |terms| &terms.hold) + of_hold;
+            holds &= largest + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
+            is_tight &= !(of_change * most[0] + of_square * most[1] + of_hold > self.negligible * limit);
         }
         if holds && (is_tight || halvings >= DEEP) {
-            let drags = self.drags(segment, [from, to], fastest[1], ([&start, &middle, &end], &rests));
-            parts.push(Part { from, length: to - from, terms: [start, middle, end], rests, drags });
+            for (joint, limit) in self.limited() {
+                let kept = KeptTorque {
+                    ends: [from, to],
+                    limit: limit * (1.0 - TIGHT),
+                    rest: rest_of(joint),
+                    drags: self.drags(segment, part, (joint, limit - rest_of(joint)[0]), most[1]),
+                };
+                kept.push(nodes, joint, most, half_planes);
+            }
             return Ok(());
         }
         if halvings == DEEPEST {
             return Err(self.too_heavy(segment, from, None));
         }
         let halvings = halvings + 1;
-        self.push(segment, fastest, Open { ends: [from, half], terms: [start, middle.clone()], halvings }, parts)?;
-        self.push(segment, fastest, Open { ends: [half, to], terms: [middle, end], halvings }, parts)
+        let half = 0.5 * (to - from);
+        for (ends, [start, end]) in
+            [([from, from + half], [nodes[0], nodes[1]]), ([from + half, to], [nodes[1], nodes[2]])]
+        {
+            let middle = self.terms_at(segment, ends[0] + 0.5 * half)?;
+            self.push((segment, most, rests), Part { ends, nodes: [start, &middle, end], halvings }, half_planes)?;
+        }
+        Ok(())
+    }
+
+    /// Joints with a limit, and their limits.
+    fn limited(&self) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+        self.torques.limits().iter().copied().enumerate().filter(|(_, limit)| limit.is_finite())
     }
 
     /// The terms at a point of a segment.
-    fn terms(&mut self, segment: &Segment, at: f64) -> Result<TorqueTerms> {
+    fn terms_at(&mut self, segment: &Segment, at: f64) -> Result<TorqueTerms> {
         let Self { path, torques, point, .. } = self;
-        for joint in 0..torques.dof() {
-            [point.q[joint], point.first[joint], point.second[joint]] =
-                path.joint_at(segment.piece, segment.from + at, joint);
-        }
+        path.write(segment.piece, segment.from + at, [&mut point.q, &mut point.first, &mut point.second]);
         let mut terms = torques.terms();
         torques.write_terms(point, &mut terms);
         match torques.beyond(&terms.hold) {
@@ -217,60 +221,118 @@ impl Builder<'_> {
         }
     }
 
-    /// The rests over a part of a segment.
-    fn rests(&mut self, segment: &Segment, [from, to]: [f64; 2]) -> Vec<Rest> {
+    /// The rests over a part of a segment, divided by the third power of its length.
+    fn rests_of_unit(&mut self, segment: &Segment) -> Rc<[Rest]> {
         let Self { path, torques, bend, .. } = self;
-        let half = 0.5 * (to - from);
+        let half = 0.5 * segment.length;
         // The polynomial of a joint on [-1, 1].
         let cubic = |joint: usize| {
-            let [c0, c1, c2] = path.joint_at(segment.piece, segment.from + from + half, joint);
+            let [c0, c1, c2] = path.joint_at(segment.piece, segment.from + half, joint);
             [c0, half * c1, 0.5 * half * half * c2, half.powi(3) * path.powers(segment.piece)[3][joint]]
         };
         let rates = |joint: usize| Majorant::of(derivative_bounds::<3>(&polynomial(cubic(joint))));
         let farthest = |joint: usize| cubic(joint).iter().map(|c| c.abs()).sum();
         let mut rests = vec![[0.0; 3]; torques.dof()];
-        torques.rests(rates, farthest, bend, &mut rests);
+        torques.rests::<ALL_FACTORS>(rates, farthest, bend, &mut rests);
+        let by_length = segment.length.powi(-3);
         // Derivatives by s, not by x.
-        rests.iter().map(|[a, b, g]| [a / half, b / (half * half), *g]).collect()
+        rests.iter().map(|[g, b, a]| [*g, b / (half * half), a / half].map(|rest| rest * by_length)).collect()
     }
 
-    /// Friction over a part of a segment on which (ds/dt)^2 is at most `square`.
-    fn drags(
-        &self,
-        segment: &Segment,
-        [from, to]: [f64; 2],
-        square: f64,
-        (terms, rests): ([&TorqueTerms; 3], &[Rest]),
-    ) -> Vec<[Drag; 2]> {
-        let half = 0.5 * (to - from);
-        let of_joint = |(joint, limit): (usize, &f64)| {
-            let [_, first, second] = self.path.joint_at(segment.piece, segment.from + from + half, joint);
-            let third = 6.0 * self.path.powers(segment.piece)[3][joint];
-            let most = (half * second).abs() + (0.5 * half * half * third).abs();
-            let hold = control_points(terms.map(|terms| terms.hold[joint]));
-            let largest = hold.into_iter().fold(0.0_f64, |largest, hold| largest.max(hold.abs()));
-            let friction = self.torques.friction(joint);
-            let room = limit - largest - rests[joint][2];
-            [first + most, most - first].map(|rate| friction.drag(rate, room, square))
-        };
-        self.torques.limits().iter().enumerate().map(of_joint).collect()
+    /// Friction of a joint over a part of a segment against positive and against negative torques, where (ds/dt)^2 is at most `square` and
+    /// the torque that holds it up may be as large as `limit`.
+    fn drags(&self, segment: &Segment, part: Part<'_>, (joint, limit): (usize, f64), square: f64) -> [Drag; 2] {
+        let friction = self.torques.friction(joint);
+        if friction.damping == 0.0 {
+            return [friction.drag(0.0, 0.0, 0.0); 2];
+        }
+        let half = 0.5 * (part.ends[1] - part.ends[0]);
+        let [_, first, second] = self.path.joint_at(segment.piece, segment.from + part.ends[0] + half, joint);
+        let third = 6.0 * self.path.powers(segment.piece)[3][joint];
+        let most = (half * second).abs() + (0.5 * half * half * third).abs();
+        let room = limit - largest(part.nodes, joint, |terms| &terms.hold);
+        [first + most, most - first].map(|rate| friction.drag(rate, room, square))
     }
 
     fn too_heavy(&self, segment: &Segment, at: f64, found: Option<TooHeavy>) -> Error {
         let s = number(self.path.breaks()[segment.piece] + segment.from + at);
-        let Some(TooHeavy { joint, torque, limit }) = found else {
-            let problem =
-                format!("at s = {s} of the path a joint can hardly hold the arm, or not move it against its friction");
-            return Error::Infeasible { problem: problem.into() };
+        let problem = match found {
+            Some(found) => self.limits.heavy_in_words(found),
+            None => "a joint can hardly hold the arm, or not move it against its friction".into(),
         };
-        let [torque, limit] = [torque.abs(), limit].map(number);
-        let unit = self.limits.torque_unit(joint);
-        let name = self.limits.joint_name(joint);
-        let problem = format!(
-            "at s = {s} of the path joint '{name}' needs {torque} {unit} to hold the arm, its limit is {limit} {unit}"
-        );
-        Error::Infeasible { problem: problem.into() }
+        Error::Infeasible { problem: format!("at s = {s} of the path {problem}").into() }
     }
+}
+
+impl TorqueBounds {
+    /// Bounds inside these half-planes.
+    fn new(half_planes: Vec<HalfPlane>) -> Self {
+        let steepest = half_planes.iter().fold(0.0_f64, |largest, [a, ..]| largest.max(a.abs()));
+        let mut bounds = Self { lines: [vec![], vec![]], largest_x: f64::INFINITY };
+        for [a, b, c] in half_planes {
+            if a.abs() <= NEGLIGIBLE_SLOPE * steepest {
+                bounds.largest_x = bounds.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
+            } else {
+                bounds.lines[usize::from(a < 0.0)].push(Line { offset: c / a, slope: b / a });
+            }
+        }
+        bounds
+    }
+
+    fn are_none(&self) -> bool {
+        self.largest_x == f64::INFINITY && self.lines.iter().all(Vec::is_empty)
+    }
+}
+
+/// The limit of a joint's torque over a part of a segment.
+struct KeptTorque {
+    ends: [f64; 2],
+    limit: f64,
+    rest: Rest,
+    /// Friction against positive and against negative torques.
+    drags: [Drag; 2],
+}
+
+impl KeptTorque {
+    /// Adds the half-planes in which it is kept, but for those that hold for all u and x up to `most`.
+    fn push(&self, nodes: [&TorqueTerms; 3], joint: usize, most: [f64; 2], half_planes: &mut Vec<HalfPlane>) {
+        let Self { ends: [from, to], limit, rest: [rest_g, rest_b, rest_a], drags } = *self;
+        // The most that it can be, quickly: few joints come near their limit.
+        let friction = drags.map(|drag| drag.at_rest + drag.per_square * most[1]);
+        let of_square = largest(nodes, joint, |terms| &terms.of_square) + rest_b;
+        let of_change = largest(nodes, joint, |terms| &terms.of_change) + rest_a;
+        let hold = largest(nodes, joint, |terms| &terms.hold) + rest_g;
+        let viscous = drags.map(|drag| 2.0 * to * drag.per_square * most[0]);
+        let inertial = of_change * most[0] + of_square * (most[1] + 2.0 * to * most[0]);
+        if inertial + hold + friction[0].max(friction[1]) + viscous[0].max(viscous[1]) <= limit {
+            return;
+        }
+        let of = |term: Term| control_points(nodes.map(|terms| term(terms)[joint]));
+        let [a, b, g] = [of(|terms| &terms.of_change), of(|terms| &terms.of_square), of(|terms| &terms.hold)];
+        // x(s) = x + 2 u s, and s times a parabola is a cubic.
+        let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [from, to]));
+        for i in 0..4 {
+            let (a, b, g) = (a[i] + 2.0 * slope[i], b[i], g[i]);
+            for (side, drag) in [1.0, -1.0].into_iter().zip(drags) {
+                let c = limit - side * g - rest_g - drag.at_rest;
+                // Friction counts (ds/dt)^2 = x + 2 u s as x and as u.
+                let rest_a = rest_a + 2.0 * to * (rest_b + drag.per_square);
+                let b = side * b + rest_b + drag.per_square;
+                let both = [side * a + rest_a, side * a - rest_a];
+                let binds = |a: &f64| !(a.abs() * most[0] + b.max(0.0) * most[1] <= c);
+                half_planes.extend(both.into_iter().filter(binds).map(|a| [a, b, c]));
+            }
+        }
+    }
+}
+
+/// One of the terms of a torque, by joint.
+type Term = fn(&TorqueTerms) -> &[f64];
+
+/// The largest size of a term over a part of a segment, up to the rest.
+fn largest(nodes: [&TorqueTerms; 3], joint: usize, term: Term) -> f64 {
+    let points = control_points(nodes.map(|terms| term(terms)[joint]));
+    points.into_iter().fold(0.0_f64, |largest, point| largest.max(point.abs()))
 }
 
 /// The Bernstein coefficients of a parabola as those of a cubic.

@@ -48,6 +48,30 @@ impl<'a> CommandAndStop<'a> {
         1.0 + self.ticks
     }
 
+    /// Displacement of joint `j` since the end of the command, after this many ticks of the stop; from -2 on, before it.
+    pub fn displacement(&self, j: usize, tick: f64) -> f64 {
+        let step = self.command[j] - self.from[j];
+        match self.state {
+            _ if tick > 0.0 => self.stops.get(j).map_or(0.0, |(stop, _)| stop.at(tick)),
+            _ if tick == 0.0 => 0.0,
+            Some(state) if tick < -1.0 => -step - state.step[j],
+            _ => -step,
+        }
+    }
+
+    /// Length of the range of joint `j`, command included.
+    pub fn range(&self, j: usize) -> f64 {
+        (self.command[j] - self.from[j]).abs() + self.stops.get(j).map_or(0.0, |(stop, _)| stop.range())
+    }
+
+    /// Writes the ticks of the stop at which the acceleration of a joint jumps or bends, in order.
+    pub fn write_phase_ends(&self, ends: &mut Vec<usize>) {
+        ends.clear();
+        ends.extend(self.stops.iter().flat_map(|(stop, _)| stop.phase_ends()).map(|end| end as usize));
+        ends.sort_unstable();
+        ends.dedup();
+    }
+
     /// Rest configuration.
     pub fn rest(&self) -> Point {
         (0..self.command.len()).map(|j| self.end(j)).collect()

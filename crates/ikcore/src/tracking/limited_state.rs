@@ -6,6 +6,9 @@ use crate::motion::{Braking, JointState, ReachableSet, Scales};
 use crate::objective::Point;
 use crate::wording::number;
 
+/// Rounding of the end of a stop (rad, m; relative beyond 1).
+const INSIDE: f64 = 16.0 * f64::EPSILON;
+
 /// Motion of an arm under acceleration or jerk limits.
 #[derive(Debug)]
 pub(super) struct LimitedState {
@@ -13,6 +16,8 @@ pub(super) struct LimitedState {
     state: JointState,
     scales: Scales,
     dt: f64,
+    /// Part of the acceleration limits with which the arm brakes, and the braking limits with it; `None`: all of them.
+    eased: Option<(f64, Vec<Braking>)>,
 }
 
 impl LimitedState {
@@ -21,12 +26,46 @@ impl LimitedState {
         let reachable = ReachableSet::new(limits, dt)?;
         let steps = (0..limits.dof()).map(|j| dt * limits.velocity_of(j).at(0.0));
         let scales = Scales::new(reachable.braking(), steps);
-        Some(Self { state: JointState::at_rest(limits.dof()), reachable, scales, dt })
+        Some(Self { state: JointState::at_rest(limits.dof()), reachable, scales, dt, eased: None })
     }
 
     /// Braking limits of the joints.
     pub fn braking(&self) -> &[Braking] {
-        self.reachable.braking()
+        match &self.eased {
+            Some((part, braking)) if *part < 1.0 => braking,
+            _ => self.reachable.braking(),
+        }
+    }
+
+    /// Part of the acceleration limits with which the arm brakes.
+    pub fn braking_part(&self) -> f64 {
+        self.eased.as_ref().map_or(1.0, |(part, _)| *part)
+    }
+
+    /// Sets the part of the acceleration limits, which are constant, with which the arm brakes.
+    pub fn set_braking_part(&mut self, part: f64) {
+        let Self { eased, reachable, .. } = self;
+        let (now, braking) = eased.get_or_insert_with(|| (1.0, reachable.braking().to_vec()));
+        *now = part;
+        for (braking, full) in braking.iter_mut().zip(reachable.braking()) {
+            braking.acceleration = part * full.acceleration;
+        }
+    }
+
+    /// Whether a joint of an arm at `q` that steps to `command` can stop inside the limits of `tick` with the braking limits in force.
+    /// Those of the reachable set assume the full ones.
+    pub fn stops_inside(&self, q: &[f64], command: &[f64], tick: &TickBox) -> bool {
+        self.braking_part() >= 1.0
+            || self.braking().iter().enumerate().all(|(j, braking)| {
+                let step = command[j] - q[j];
+                let change = step - self.state.step[j];
+                let stop = braking.stop(step, change);
+                let rounding = INSIDE * q[j].abs().max(1.0);
+                let [floor, ceiling] = [tick.floor[j].min(q[j]) - rounding, tick.ceiling[j].max(q[j]) + rounding];
+                change.abs() <= braking.acceleration + braking.jerk
+                    && command[j] + stop.lowest >= floor
+                    && command[j] + stop.highest <= ceiling
+            })
     }
 
     /// Displacement and its change in the last tick.

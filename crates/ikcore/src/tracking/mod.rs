@@ -21,6 +21,7 @@
 //! | `around_arm` | obstacles and links around an arm, as constraint rows of its command |
 //! | `safety_filter`, `command_and_stop`, `coupled_stop` | the motion of an arm among obstacles or with pairs of tips held, each command certified with the stop after it |
 //! | `tip_pace` | limits of the speed and turn speed of tips |
+//! | `torque_pace`, `stop_torques` | torque limits: commands and stops that the motors can make, and their certificate |
 //! | `progress` | progress towards its target of an arm held by obstacles |
 //! | `settling` | rest of an arm that comes no nearer to targets that stand still |
 //! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and what a step says of it |
@@ -57,11 +58,13 @@ mod session;
 mod settling;
 mod step;
 mod step_context;
+mod stop_torques;
 mod target_filter;
 mod target_stream;
 mod tip_pace;
 mod tip_paths;
 mod tip_pose;
+mod torque_pace;
 mod track;
 mod track_options;
 mod tracked_arm;

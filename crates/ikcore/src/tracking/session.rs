@@ -14,9 +14,10 @@ use super::step::Step;
 use super::step_context::StepContext;
 use super::target_stream::Arrival;
 use super::tip_pace::TipPace;
+use super::torque_pace::{OtherLimits, TorquePace};
 use super::track_options::TrackOptions;
 use super::tracked_arm::TrackedArm;
-use super::way_back::{EndOfTick, Next, WayBack};
+use super::way_back::{EndOfTick, Next, OpenLines, WayBack};
 use crate::constraint::{Keep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
@@ -46,6 +47,8 @@ pub struct Session {
     safety: Option<Box<SafetyFilter>>,
     /// Limits of tips.
     pace: Option<Box<TipPace>>,
+    /// Torque limits.
+    torques: Option<Box<TorquePace>>,
     /// Way back of an arm that comes no nearer to its target; `None` for other rules, and tasks with a region.
     way_back: Option<Box<WayBack>>,
     /// Rest of an arm that comes no nearer; `None` where there is no way back.
@@ -68,7 +71,7 @@ impl Session {
         options.rule.validate()?;
         options.rule.validate_for(robot, dt)?;
         options.check_goals(robot)?;
-        let arm = TrackedArm::new(robot, start, dt, options)?;
+        let mut arm = TrackedArm::new(robot, start, dt, options)?;
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| arm.limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &arm.robot, &ranges);
@@ -78,6 +81,11 @@ impl Session {
         let filters = !arm.has_one_tip() || space.is_some() || kept.is_some();
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, kept, &arm.limits)?)) } else { None };
         let pace = TipPace::new(robot, &arm.limits)?;
+        let mut torques = TorquePace::new(robot, &arm.limits)?;
+        if let Some(torques) = &mut torques {
+            torques.require_held("start", &arm.q, robot)?;
+            arm.set_braking_part(1.0); // prepares the limits of milder stops
+        }
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
         let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
         let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
@@ -86,7 +94,21 @@ impl Session {
         });
         let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
         let stopping = false;
-        Ok(Self { arm, rule, running, goals, surroundings, safety, pace, way_back, settling, stopping, seed, rng })
+        Ok(Self {
+            arm,
+            rule,
+            running,
+            goals,
+            surroundings,
+            safety,
+            pace,
+            torques,
+            way_back,
+            settling,
+            stopping,
+            seed,
+            rng,
+        })
     }
 
     /// Accepted configuration (n,).
@@ -236,6 +258,7 @@ impl Session {
         };
         let held = if found.interrupted || self.stopping { None } else { self.filter(settled, &mut found) };
         self.keep_pace(&mut found);
+        self.keep_torques(settled, &mut found);
         self.keep_in_region(&mut found);
         let status = self.status(&found, held);
         if !found.interrupted {
@@ -245,7 +268,11 @@ impl Session {
         }
         let away = self.way_back.as_ref().and_then(|way_back| way_back.away());
         let status = if status == Status::Improved && away.is_some_and(|away| away.way != Way::Taken) {
-            Status::Capped
+            if self.torques.as_ref().is_some_and(|torques| torques.holds_lately()) {
+                Status::HeldByTorque
+            } else {
+                Status::Capped
+            }
         } else {
             status
         };
@@ -263,9 +290,15 @@ impl Session {
             self.follow_from_here();
             self.arm.last_value = None;
         }
-        if self.pace.is_some() && self.arm.tasks.with(&arrival.targets).has_pairs() {
-            let problem =
-                "limits of tips are not kept while one tip is held in the frame of another: leave one of the two out";
+        let unkept = match (&self.pace, &self.torques) {
+            (Some(_), _) => "limits of tips",
+            (_, Some(_)) => "torque limits",
+            _ => return Ok(()),
+        };
+        if self.arm.tasks.with(&arrival.targets).has_pairs() {
+            let problem = format!(
+                "{unkept} are not kept while one tip is held in the frame of another: leave one of the two out"
+            );
             return Err(Error::Contradiction { problem: problem.into() });
         }
         Ok(())
@@ -313,7 +346,8 @@ impl Session {
         let Some(way_back) = self.way_back.as_mut().filter(|_| !self.stopping) else { return };
         let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
         let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
-        let next = way_back.end_tick(end, self.safety.as_deref_mut());
+        let lines = OpenLines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
+        let next = way_back.end_tick(end, lines);
         found.evaluations += way_back.evaluations();
         match next {
             Next::Continue => {}
@@ -349,12 +383,16 @@ impl Session {
         let Score { value, solved } = found.assessment.score;
         match self.arm.last_value {
             _ if !self.is_clear(&found.q) => Status::InCollision,
+            _ if self.torques.as_ref().is_some_and(|torques| !torques.is_certified()) => Status::HeldByTorque,
             _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
             _ if solved => Status::Solved,
             _ if let Some(holder) = held.or(self.holds_goal()) => match holder {
                 Holder::Body => Status::HeldByObstacle,
                 Holder::Constraint => Status::HeldByConstraint,
             },
+            Some(last) if self.torques.as_ref().is_some_and(|torques| torques.holds(last, value, self.arm.dt)) => {
+                Status::HeldByTorque
+            }
             _ if let Some(status) = self.arm.given_up(found) => status,
             Some(last) if value >= last => Status::Capped,
             // Other rules may take steps as short as these.
@@ -389,7 +427,7 @@ impl Session {
             return;
         }
         let is_held = match status {
-            Status::HeldByObstacle | Status::HeldByConstraint => true,
+            Status::HeldByObstacle | Status::HeldByConstraint | Status::HeldByTorque => true,
             Status::Solved => self.goals.is_empty(),
             _ => self.way_back.as_ref().is_some_and(|way_back| way_back.away().is_some()),
         };
@@ -425,6 +463,18 @@ impl Session {
         }
     }
 
+    /// Changes the command `found` to one that keeps the torque limits. The stop of an arm that stops is certified, unless masses have changed.
+    fn keep_torques(&mut self, settled: bool, found: &mut TickResult) {
+        let Some(torques) = &mut self.torques else { return };
+        if found.interrupted || self.stopping && torques.is_certified() {
+            return;
+        }
+        let others = OtherLimits { safety: self.safety.as_deref_mut(), pace: self.pace.as_deref_mut() };
+        if torques.keep(&mut self.arm, others, settled, &mut found.q) {
+            self.note_changed(found);
+        }
+    }
+
     /// Assesses a command that is not the one of the rule.
     fn note_changed(&mut self, found: &mut TickResult) {
         self.arm.assess(found);
@@ -456,6 +506,36 @@ impl Session {
     /// The constraint nearest to its tolerance, in words; `None` if nothing is kept.
     pub fn tightest(&self) -> Option<String> {
         self.safety.as_ref()?.kept()?.tightest_at(&self.arm.q)
+    }
+
+    /// Whether torques are limited.
+    pub(super) fn limits_torque(&self) -> bool {
+        self.torques.is_some()
+    }
+
+    /// The torque limit that holds the arm back, in words; `None` if none does.
+    pub fn held_by_torque(&self) -> Option<String> {
+        self.torques.as_ref()?.held_in_words(&self.arm.given)
+    }
+
+    /// Exchanges the masses: `robot` is the one of the session with other masses, payloads or gravity. The next command and its stop are checked
+    /// with the new ones.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] for a robot that differs in anything else, [`Error::NoDynamics`] for one without masses where torques are
+    /// limited; the session is then as before.
+    pub fn set_robot(&mut self, robot: &Robot) -> Result<()> {
+        if *robot == self.arm.given {
+            return Ok(());
+        }
+        robot.require_masses_alone_differ(&self.arm.given)?;
+        if let Some(torques) = &mut self.torques {
+            torques.carry(robot, &self.arm.limits)?;
+        }
+        self.arm.robot = Arc::new(self.arm.robot.with_masses_of(robot));
+        self.arm.given = robot.clone();
+        self.settling.iter_mut().for_each(Settling::restart);
+        Ok(())
     }
 
     /// Velocities of the obstacles (m/s); empty if all are at rest.
@@ -566,7 +646,12 @@ impl Session {
         if let Some(kept) = self.safety.as_ref().and_then(|safety| safety.kept()) {
             refuse_broken("q", kept.keeps(), kept.robot(), q)?;
         }
+        if let Some(torques) = self.torques.as_mut().filter(|_| q.len() == self.arm.q.len()) {
+            torques.require_held("q", q, &self.arm.given)?;
+        }
         self.arm.reset(q, [qd, qdd])?;
+        self.arm.set_braking_part(1.0);
+        self.torques.iter_mut().for_each(|torques| torques.restart());
         self.stopping = false;
         if let Some(way_back) = &mut self.way_back {
             way_back.restart();

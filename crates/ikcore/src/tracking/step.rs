@@ -14,7 +14,8 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::HeldByConstraint`] if what is to be kept does, [`Status::LevelGivenUp`] if the lowest level of
+    /// holds the arm back, [`Status::HeldByConstraint`] if what is to be kept does, [`Status::HeldByTorque`] if a torque
+    /// limit does or is exceeded by what the arm carries, [`Status::LevelGivenUp`] if the lowest level of
     /// several targets is met, not all, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
     /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
     pub status: Status,
@@ -74,6 +75,7 @@ impl Step {
             Status::InCollision => "nearer than the margin to an obstacle or another link",
             Status::HeldByObstacle => "held back by an obstacle or another link",
             Status::HeldByConstraint => "held back by what is to be kept",
+            Status::HeldByTorque => "held back by a torque limit",
             _ => "no nearer than in the tick before",
         };
         let known = match self.away {

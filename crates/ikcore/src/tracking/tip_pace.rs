@@ -88,6 +88,11 @@ impl TipPace {
         true
     }
 
+    /// Whether the command `q` and the stop after it keep the limits.
+    pub fn allows(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        self.factor(context, q) <= 1.0
+    }
+
     /// Factor by which the tips are too fast in the command `q` and the stop after it, at most; once beyond 1, of what was examined.
     fn factor(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
         let motion = context.stop_after(q);

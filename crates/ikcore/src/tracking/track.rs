@@ -72,6 +72,10 @@ pub fn track_tips(
         let does = " does not keep constraints: leave one of the two out, or plan to the path first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
+    if options.ease && session.limits_torque() {
+        let does = " does not keep torque limits: leave one of the two out, or plan to the path first";
+        return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
+    }
     let criterion = asked.tips.first().map_or(only.criterion, |task| task.tolerance.into());
     let limits = session.limits().clone();
     let mut record = Record::new(start.len(), first.len(), limits, options.limit_at, criterion, first.dt());

@@ -125,7 +125,6 @@ impl TrackOptions {
         limits.require_for(robot)?;
         limits.require_pace_or_consent()?;
         limits.refuse_tips(&[TipField::Acceleration], "track", "a plan keeps them")?;
-        limits.refuse_torque("track", "a plan keeps them")?;
         Ok(limits)
     }
 }

@@ -26,6 +26,8 @@ const REST: f64 = 1e-4;
 #[derive(Debug)]
 pub(super) struct TrackedArm {
     pub robot: Arc<Robot>,
+    /// The robot as given, without the tool of a task.
+    pub given: Robot,
     pub limits: Limits,
     /// Names the joints that limits of zero lock.
     pub lock: Option<Arc<Message>>,
@@ -63,9 +65,11 @@ impl TrackedArm {
         }
         robot.check("start", start)?;
         let AdmittedStart { q, outside } = limits.admit_start(Some(robot), "start", start, &options.start_slack)?;
+        let robot_as_given = robot.clone();
         let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
         let weights = options.weights_for(&robot, limited.is_some())?;
         let arm = Self {
+            given: robot_as_given,
             robot,
             tick_box: TickBox::around(&q, &limits).weighted(weights),
             limited,
@@ -125,6 +129,16 @@ impl TrackedArm {
     /// End of the next tick (s).
     pub fn next_time(&self) -> f64 {
         (self.ticks + 1) as f64 * self.dt
+    }
+
+    /// Part of the acceleration limits with which the arm brakes.
+    pub fn braking_part(&self) -> f64 {
+        self.limited.as_ref().map_or(1.0, LimitedState::braking_part)
+    }
+
+    /// Sets that part.
+    pub fn set_braking_part(&mut self, part: f64) {
+        self.limited.iter_mut().for_each(|limited| limited.set_braking_part(part));
     }
 
     /// Sets the box of the next tick by the limits on position and velocity. Returns whether all joints can be inside.

@@ -38,6 +38,11 @@ pub fn of_position(robot: &Robot, what: &str, tips: &[usize], position: &[f64; 3
     far_position(what, &ReachBall::of(robot, tips), position)
 }
 
+/// Doubts the position of a target of the centre of mass (m). `what` names it.
+pub fn of_center_of_mass(robot: &Robot, what: &str, position: &[f64; 3]) -> Option<UnitDoubt> {
+    if position.iter().any(|x| x.abs() > FAR) { far_position(what, &ReachBall::of_all(robot), position) } else { None }
+}
+
 #[cold]
 fn far_position(what: &str, ball: &ReachBall, position: &[f64; 3]) -> Option<UnitDoubt> {
     let largest = (0..3).max_by(|i, j| position[*i].abs().total_cmp(&position[*j].abs()))?;

@@ -48,7 +48,8 @@ const METHOD: &str = "time_optimal";
 ///
 /// Returns:
 ///     A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-///     points. With jerk limits it consists of quintic segments that meet the path at their ends.
+///     points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+///     or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -136,5 +137,6 @@ pub fn time_optimal(
     if let Some(noise) = noise {
         warn_user(py, &said(&noise.message()))?;
     }
-    Ok(PyTrajectory::from(motion))
+    let outside = limits.start_outside(&motion);
+    Ok(PyTrajectory::led(motion, &outside))
 }

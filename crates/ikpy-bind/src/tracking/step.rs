@@ -65,6 +65,7 @@ outcome! {
     success,
     /// SOLVED within the tolerances; IN_COLLISION nearer than the margin to an obstacle or between links;
     /// HELD_BY_OBSTACLE if an obstacle keeps the tip from the target; HELD_BY_CONSTRAINT if what is to be kept does;
+    /// HELD_BY_TORQUE if a torque limit does, or is exceeded by what the arm carries;
     /// LEVEL_GIVEN_UP if the lowest level of the targets of several tips is met, not all;
     /// IMPROVED if nearer than in the previous step; otherwise CAPPED.
     status: result.core.status,

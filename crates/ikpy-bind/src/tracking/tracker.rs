@@ -46,7 +46,8 @@ use crate::units;
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
 ///     limits: numbers and `Sinusoid`s; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
 ///         `Limits(velocity=np.inf)` says that jumps are meant. Callables cannot be used: there is no end time up to which to
-///         sample them.
+///         sample them. With `torque`, which needs acceleration limits, a command is sent only if it and the stop after it are within the
+///         torques at every tick, with what the arm carries; see `Tracker.robot`.
 ///     goals, joint_weights: as in `track`.
 ///     position_tolerance: largest position error (m); for several tips also a dict.
 ///     rotation_tolerance: largest rotation error (rad); for several tips also a dict.
@@ -84,15 +85,16 @@ pub struct PyTracker {
     doubted: AtomicBool,
     /// Whether a solver of any budget runs in each step; other rules take microseconds.
     runs_solver: bool,
-    /// The robot.
-    #[pyo3(get)]
-    robot: Py<PyRobot>,
+    /// The robot as first given, whose links all later ones have.
+    first: Py<PyRobot>,
+    /// The robot that carries other masses since; `None` for the first.
+    carrying: Mutex<Option<Py<PyRobot>>>,
     /// The limits in force.
     #[pyo3(get)]
     limits: Py<PyLimits>,
 }
 
-traversed!(PyTracker: robot, limits);
+traversed!(PyTracker: first, carrying, limits);
 
 in_progress!(PyTracker, Session);
 
@@ -168,15 +170,16 @@ impl PyTracker {
             drifted,
             doubted,
             runs_solver,
-            robot: robot.clone().unbind(),
+            first: robot.clone().unbind(),
+            carrying: Mutex::new(None),
             limits: in_force,
         })
     }
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
     /// with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-    /// ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-    /// is held there, with priority over all other targets.
+    /// ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+    /// all masses. A pair that has reached its target is held there, with priority over all other targets.
     ///
     /// Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
     /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
@@ -210,7 +213,7 @@ impl PyTracker {
                 Ok(pose)
             })
         };
-        let target = target.map(|target| Asked::read("target", self.robot.get(), target, read)).transpose()?;
+        let target = target.map(|target| Asked::read("target", self.first.get(), target, read)).transpose()?;
         self.doubt_once(|robot| {
             target.as_ref()?.iter().find_map(|(subject, target)| units::of_target(robot, "target", subject, target))
         })?;
@@ -247,6 +250,7 @@ impl PyTracker {
         let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
         let held_by = match core.status {
             Status::HeldByConstraint => session.tightest(),
+            Status::HeldByTorque => session.held_by_torque(),
             Status::LevelGivenUp | Status::Capped => session.levels_in_words(),
             _ => None,
         };
@@ -278,7 +282,7 @@ impl PyTracker {
         qdd: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let read = |name: &str, value: Option<&Bound<'_, PyAny>>| value.map(|value| vector(name, value)).transpose();
-        let arm = &self.robot.get().core;
+        let arm = &self.first.get().core;
         let (q, qd, qdd) = (joint_vector(arm, "q", q)?, read("qd", qd)?, read("qdd", qdd)?);
         self.session().reset(&q, qd.as_deref(), qdd.as_deref()).map_err(raise)
     }
@@ -307,10 +311,25 @@ impl PyTracker {
         self.session().set_obstacles(shapes, velocities).map_err(raise)
     }
 
+    /// The robot. Assign it with another payload, other masses or another gravity when what it carries changes:
+    /// `tracker.robot = robot.with_payload(2.0)`. The next command and its stop are checked with these. If the present motion is then beyond a
+    /// torque limit, the arm brakes as well as it can, and the status is HELD_BY_TORQUE. A robot that differs in anything else is refused.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.carrying().as_ref().unwrap_or(&self.first).clone_ref(py)
+    }
+
+    #[setter]
+    fn set_robot(&self, robot: &Bound<'_, PyRobot>) -> PyResult<()> {
+        self.session().set_robot(&robot.get().core).map_err(raise)?;
+        *self.carrying() = Some(robot.clone().unbind());
+        Ok(())
+    }
+
     /// What holds at every instant, a tuple of `Keep`.
     #[getter]
     fn keep<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let (session, robot) = (self.session(), &self.robot.get().core);
+        let (session, robot) = (self.session(), &self.first.get().core);
         PyTuple::new(py, session.keeps().iter().map(|keep| PyKeep::from_core(keep, robot)))
     }
 
@@ -326,9 +345,14 @@ impl PyTracker {
         if self.doubted.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let found = find(&self.robot.get().core);
+        let found = find(&self.first.get().core);
         self.doubted.store(found.is_some(), Ordering::Relaxed);
         units::doubt(found)
+    }
+
+    /// Locks the robot that carries other masses.
+    fn carrying(&self) -> std::sync::MutexGuard<'_, Option<Py<PyRobot>>> {
+        self.carrying.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 
     /// Locks the keys of the last targets.

@@ -29,9 +29,10 @@ from ..options import (
     UrdfFile,
     Velocity,
     load_robot,
+    loaded,
     numbers,
 )
-from .planned import Animated, Budget, Out, SearchName, Solver, loaded, options, report, search
+from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
 _DURATION = 1.0  # s; the planner ignores it
 

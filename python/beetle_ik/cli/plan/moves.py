@@ -28,9 +28,10 @@ from ..options import (
     UrdfFile,
     Velocity,
     load_robot,
+    loaded,
     numbers,
 )
-from .planned import Animated, Budget, Out, loaded, options, report
+from .planned import Animated, Budget, Out, options, report
 
 _POSE = 6
 _KEYS: dict[str, tuple[set[str], set[str]]] = {

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import Break, InvalidInputError, Limits, MoveReport, Plan, Robot, Stop, plot
+from ... import Break, InvalidInputError, Limits, MoveReport, Plan, Stop, plot
 from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
@@ -58,14 +58,6 @@ def options(
     if max_evaluations is not None:
         chosen["stop"] = Stop(max_evaluations=max_evaluations)
     return chosen
-
-
-def loaded(arm: Robot, payload: float | None, torque_limits: bool) -> tuple[Robot, Any]:
-    """Returns the robot with its payload, and its torque limits if they are to be kept."""
-    if payload is not None and not torque_limits:
-        raise InvalidInputError("--payload counts only where torques are limited: use --torque-limits too")
-    carrying = arm if payload is None else arm.with_payload(payload)
-    return carrying, carrying.torque_limit if torque_limits else None
 
 
 def search(solver: SearchName | None) -> Any:

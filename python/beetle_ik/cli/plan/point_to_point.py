@@ -29,9 +29,10 @@ from ..options import (
     Velocity,
     kept_upright,
     load_robot,
+    loaded,
     numbers,
 )
-from .planned import Animated, Budget, Out, SearchName, Solver, loaded, options, report, search
+from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
 
 class Method(StrEnum):

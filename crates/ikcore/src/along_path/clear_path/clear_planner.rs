@@ -148,8 +148,10 @@ impl<'p> ClearPlanner<'p> {
             if round == 0 {
                 let improved;
                 (improved, found) = self.improved(interpolation, waypoints, monitor)?;
-                let is_better = fault.is_some() || self.cost(&improved) < self.cost(&smooth);
-                if is_better && self.fault(&improved).is_none() {
+                let is_better = |improved: &FollowedPath| fault.is_some() || self.cost(improved) < self.cost(&smooth);
+                if let Some(improved) = improved.filter(is_better)
+                    && self.fault(&improved).is_none()
+                {
                     return self.finished(improved, found, None);
                 }
             }
@@ -185,13 +187,13 @@ impl<'p> ClearPlanner<'p> {
         self.problem.options.objective.of(&self.problem.robot, &motion.trajectory)
     }
 
-    /// Searches around `waypoints` for a better motion.
+    /// Searches around `waypoints` for a better motion; `None` if joints cannot hold the arm on the one that was found.
     fn improved(
         &self,
         interpolation: Interpolation<'_>,
         waypoints: JointWaypoints,
         monitor: &mut dyn Monitor,
-    ) -> Result<(FollowedPath, Option<SearchResult>)> {
+    ) -> Result<(Option<FollowedPath>, Option<SearchResult>)> {
         let Self { problem, space, .. } = self;
         let starts_as_given = problem.options.start.is_some();
         let motion =
@@ -202,7 +204,7 @@ impl<'p> ClearPlanner<'p> {
         let found = search(&mut cost, problem.options, problem.options.stop.unwrap_or(budget), monitor)?;
         let z: &[f64] = found.as_ref().map_or(&[], |found| &found.x);
         let (waypoints, _) = cost.waypoints(z);
-        Ok((problem.motion(&cost.interpolation, waypoints)?, found))
+        Ok((problem.motion_if_held(&cost.interpolation, waypoints)?.ok(), found))
     }
 
     fn fault(&self, motion: &FollowedPath) -> Option<Fault> {

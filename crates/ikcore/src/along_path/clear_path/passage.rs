@@ -118,9 +118,11 @@ impl<'a> Passage<'a> {
         near.map(|extra| extra.distance).fold(POSTURE_RESERVE, f64::max)
     }
 
-    /// Whether the posture `q` keeps clear there, and everything else that is to be kept.
+    /// Whether the posture `q` keeps clear there, and everything else that is to be kept; the joints can hold the arm there.
     pub fn is_clear(&self, fraction: f64, q: &[f64]) -> bool {
-        self.problem.keeps.hold(q) && self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(fraction)))
+        self.problem.keeps.hold(q)
+            && self.space.is_none_or(|space| space.keeps(q, self.kept_beyond_margin(fraction)))
+            && self.problem.limits.too_heavy(q).is_none()
     }
 
     /// Returns the posture on the path nearest to `guess`, if there is one inside the limits.

@@ -181,6 +181,21 @@ impl<'a> PathProblem<'a> {
         let trajectory = time_all(&stretches, &self.limits)?;
         Ok(FollowedPath { waypoints, stretches, path, trajectory })
     }
+
+    /// [`motion`](Self::motion), or the reason why a joint cannot hold the arm on it.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(crate) fn motion_if_held(
+        &self,
+        interpolation: &Interpolation<'_>,
+        waypoints: JointWaypoints,
+    ) -> Result<Result<FollowedPath>> {
+        match self.motion(interpolation, waypoints) {
+            Err(heavy @ Error::Infeasible { .. }) if self.limits.limit_torque() => Ok(Err(heavy)),
+            other => other.map(Ok),
+        }
+    }
 }
 
 /// Checks that at `q` the tip is at the start of the path, within its tolerance and `accuracy`.

@@ -22,14 +22,16 @@ const POPULATION: usize = 30;
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
-    let mut candidates = vec![];
+    let (mut candidates, mut refused) = (vec![], None);
     for waypoints in NominalMotions::new(problem).all()? {
         let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy, true)?;
-        let plan = problem.plan(problem.motion(&interpolation, waypoints.clone())?);
-        candidates.push(Candidate { plan, interpolation, waypoints });
+        match problem.motion_if_held(&interpolation, waypoints.clone())? {
+            Ok(motion) => candidates.push(Candidate { plan: problem.plan(motion), interpolation, waypoints }),
+            Err(heavy) => refused = refused.or(Some(heavy)),
+        }
     }
     let mut candidates = candidates.into_iter();
-    let Some(widest) = candidates.next() else { return Ok(None) };
+    let Some(widest) = candidates.next() else { return refused.map_or(Ok(None), Err) };
     // The shortest motion is not always the quickest, nor the quickest one after the search.
     match candidates.reduce(|first, other| if is_better(&other.plan, &first.plan) { other } else { first }) {
         Some(other) if is_better(&other.plan, &widest.plan) => {
@@ -72,8 +74,11 @@ impl<'p> Candidate<'p> {
         };
         let Some(found) = search(&mut cost, options, stop, monitor)? else { return Ok((self.plan, None)) };
         let (waypoints, _) = cost.waypoints(&found.x);
-        let plan = problem.plan(problem.motion(&cost.interpolation, waypoints)?);
-        // The search times a motion only roughly.
+        // The search times a motion only roughly, and does not ask whether joints can hold the arm.
+        let plan = match problem.motion_if_held(&cost.interpolation, waypoints)? {
+            Ok(motion) => problem.plan(motion),
+            Err(_) => return Ok((self.plan, Some(found))),
+        };
         Ok((if is_better(&self.plan, &plan) { self.plan } else { plan }, Some(found)))
     }
 }

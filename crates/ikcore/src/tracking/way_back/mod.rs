@@ -28,6 +28,7 @@ use super::away::{Away, Way};
 use super::progress::patience_factor;
 use super::safety_filter::SafetyFilter;
 use super::step_context::StepContext;
+use super::torque_pace::TorquePace;
 use crate::limits::Limits;
 use crate::math::vector::{largest_difference, write_between};
 use crate::objective::{Bounds, Linearization, Point, Score};
@@ -106,6 +107,12 @@ enum State {
     Returning,
 }
 
+/// What decides on lines of the joints.
+pub(super) struct OpenLines<'a> {
+    pub safety: Option<&'a mut SafetyFilter>,
+    pub torques: Option<&'a mut TorquePace>,
+}
+
 /// Way back of one arm, with its state between ticks.
 #[derive(Debug)]
 pub(super) struct WayBack {
@@ -179,9 +186,9 @@ impl WayBack {
         self.tried.iter_mut().for_each(Tried::note_replaced);
     }
 
-    /// Ends a tick. `safety` certifies lines of the joints.
+    /// Ends a tick. `lines` says which lines of the joints may be taken.
     #[inline]
-    pub fn end_tick(&mut self, end: EndOfTick<'_>, safety: Option<&mut SafetyFilter>) -> Next {
+    pub fn end_tick(&mut self, end: EndOfTick<'_>, lines: OpenLines<'_>) -> Next {
         self.evaluations = 0;
         let error = if end.score.solved { 0.0 } else { end.score.value.sqrt() };
         if self.state == State::Following {
@@ -192,18 +199,18 @@ impl WayBack {
                 return Next::Continue;
             }
         }
-        self.decide(error, end, safety)
+        self.decide(error, end, lines)
     }
 
     #[cold]
-    fn decide(&mut self, error: f64, mut end: EndOfTick<'_>, safety: Option<&mut SafetyFilter>) -> Next {
+    fn decide(&mut self, error: f64, mut end: EndOfTick<'_>, lines: OpenLines<'_>) -> Next {
         match self.state {
             State::Returning => return self.check_return(&end),
             State::Following => self.doubt(error, &end),
             _ if !is_still(error, self.error_at_rest) => self.follow(),
             State::Doubting => self.begin_to_look(&mut end),
             State::Looking => self.look(&mut end),
-            State::Choosing { candidate, section } => return self.choose((candidate, section), &mut end, safety),
+            State::Choosing { candidate, section } => return self.choose((candidate, section), &mut end, lines),
         }
         Next::Continue
     }
@@ -296,7 +303,7 @@ impl WayBack {
         &mut self,
         (candidate, section): (usize, usize),
         end: &mut EndOfTick<'_>,
-        safety: Option<&mut SafetyFilter>,
+        mut lines: OpenLines<'_>,
     ) -> Next {
         let context = end.context;
         let Some(to) = self.search.found.get(candidate) else {
@@ -308,8 +315,8 @@ impl WayBack {
             self.stay(Way::Blocked, end, false);
             return Next::Continue;
         }
-        if let Some(safety) = safety {
-            let is_clear = section_is_clear(safety, &context, &to.q, section);
+        if lines.are_limited() {
+            let is_clear = lines.allow_section(&context, &to.q, section);
             if !is_clear || section + 1 < SECTIONS {
                 let next = if is_clear { (candidate, section + 1) } else { (candidate + 1, 0) };
                 self.state = State::Choosing { candidate: next.0, section: next.1 };
@@ -379,11 +386,18 @@ fn is_resting(end: &EndOfTick<'_>) -> bool {
     steps.map(|((q, before), velocity)| (q - before).abs() - RESTING * dt * velocity.min(1.0)).all(|over| over <= 0.0)
 }
 
-/// Whether a section of the line from the arm to `to` is certified clear.
-fn section_is_clear(safety: &mut SafetyFilter, context: &StepContext<'_>, to: &[f64], section: usize) -> bool {
-    let mut ends = [(); 2].map(|()| Point::from_slice(context.q));
-    for (k, end) in ends.iter_mut().enumerate() {
-        write_between(context.q, to, (section + k) as f64 / SECTIONS as f64, end);
+impl OpenLines<'_> {
+    fn are_limited(&self) -> bool {
+        self.safety.is_some() || self.torques.is_some()
     }
-    safety.certifies_line(&ends[0], &ends[1])
+
+    /// Whether a section of the line from the arm to `to` is certified clear, and the joints can hold the arm at its ends.
+    fn allow_section(&mut self, context: &StepContext<'_>, to: &[f64], section: usize) -> bool {
+        let mut ends = [(); 2].map(|()| Point::from_slice(context.q));
+        for (k, end) in ends.iter_mut().enumerate() {
+            write_between(context.q, to, (section + k) as f64 / SECTIONS as f64, end);
+        }
+        self.torques.as_mut().is_none_or(|torques| torques.can_hold(&ends[1]))
+            && self.safety.as_mut().is_none_or(|safety| safety.certifies_line(&ends[0], &ends[1]))
+    }
 }

@@ -1,0 +1,320 @@
+//! Torque limits of a tracked arm: in every command, and in the stop after it.
+//!
+//! A stop brakes with a part of the acceleration limits, the same for all joints: what the motors can give there. A command that is not
+//! certified is tried with a milder stop, or moved towards the command that brakes, which was certified with the command before. Where there
+//! is room, the stop becomes harder again. Where the joints could not hold the arm at rest after a command, it is led aside first.
+
+use super::around_arm::{Response, require_constant};
+use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
+use super::safety_filter::SafetyFilter;
+use super::step_context::StepContext;
+use super::stop_torques::{Overload, StopTorques};
+use super::tip_pace::TipPace;
+use super::tracked_arm::TrackedArm;
+use crate::error::{Error, Result};
+use crate::limits::{Field, Limits};
+use crate::math::MAX_DOF;
+use crate::math::row_step::{Row, SOFTNESS};
+use crate::math::vector::{dot, write_within};
+use crate::message::{Setting, message};
+use crate::objective::Point;
+use crate::robot::{JointKind, Robot};
+use crate::task::Aims;
+use crate::wording::number;
+
+/// Commands tried in a tick beside the one asked for.
+const TRIES: usize = 4;
+
+/// Smallest part of the acceleration limits of a stop, and the largest change of that part which a single tick makes.
+const LEAST_PART: f64 = 0.05;
+const HARDER: f64 = 1.25;
+
+/// Used part of the torque limits below which a harder stop is tried in each tick, and the ticks after which it is tried anyway.
+const AMPLE: f64 = 0.75;
+const NOW_AND_THEN: usize = 8;
+
+/// Part of a command below which the arm rather brakes.
+const SHORTEST: f64 = 0.02;
+
+/// Parts of the acceleration limits tried by an arm whose stop is no longer certified.
+const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
+
+/// Ratio of the torques of two stops that are not certified below which the milder one is taken, and the mildest of these.
+const CLEARLY_LESS: f64 = 0.97;
+const MILDEST: f64 = 0.25;
+
+/// Part of a command above which a torque limit only slows it.
+const SLOWED: f64 = 0.1;
+
+/// Time for which a limit counts as what holds the arm (s), and the largest decrease of the error of an arm that is held, per second.
+const HELD: f64 = 0.1;
+const CREEPING: f64 = 0.05;
+
+/// Torque limits of an arm, and what of them holds it back.
+#[derive(Debug)]
+pub(super) struct TorquePace {
+    stop: StopTorques,
+    rows: ConstrainedStep,
+    held_by: Option<Overload>,
+    /// Time since it last changed a command (s).
+    free_for: f64,
+    /// Whether the stop after the last command is certified. A payload that changes in the hand ends that.
+    certified: bool,
+}
+
+/// What else a command has to satisfy.
+pub(super) struct OtherLimits<'a> {
+    pub safety: Option<&'a mut SafetyFilter>,
+    pub pace: Option<&'a mut TipPace>,
+}
+
+impl TorquePace {
+    /// The torque limits of `robot`; `None` without any.
+    ///
+    /// # Errors
+    /// [`Error::NoDynamics`]; [`Error::UnsupportedLimit`] for joints without an acceleration limit, for limits that vary over time, and for a
+    /// base that floats.
+    pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
+        let Some(stop) = StopTorques::new(robot, limits)? else { return Ok(None) };
+        let accelerations = limits.field(Field::Acceleration).unwrap_or_default();
+        let is_free = |j: usize| accelerations.get(j).is_none_or(|limit| limit.at(0.0) == f64::INFINITY);
+        if let Some(joint) = (0..limits.dof()).find(|j| is_free(*j)) {
+            let remedy = message![
+                format!(
+                    "joint '{}' may change its velocity at once, which takes any torque: give ",
+                    limits.joint_name(joint)
+                ),
+                Setting::Limit("acceleration"),
+            ];
+            return Err(Error::UnsupportedLimit { field: "torque".into(), method: "track".into(), remedy });
+        }
+        require_constant(
+            limits,
+            "tracking with torque limits",
+            "limits that vary can ask for more torque than there is; give numbers",
+        )?;
+        let rows = ConstrainedStep::with_room(limits.dof(), limits.dof());
+        Ok(Some(Box::new(Self { stop, rows, held_by: None, free_for: 0.0, certified: true })))
+    }
+
+    /// Checks that the joints can hold the arm at `q`, the argument `what`.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] names joint, torque and limit.
+    pub fn require_held(&mut self, what: &str, q: &[f64], robot: &Robot) -> Result<()> {
+        self.stop.too_heavy(q).map_or(Ok(()), |overload| {
+            let needed = overload.in_words("needs", robot);
+            let problem =
+                format!("at {what} {needed}: begin elsewhere, lighten the payload, or raise the torque limit");
+            Err(Error::Contradiction { problem: problem.into() })
+        })
+    }
+
+    /// Carries the masses of `robot` from now on: no stop is certified for them yet.
+    ///
+    /// # Errors
+    /// [`Error::NoDynamics`]; nothing has changed then.
+    pub fn carry(&mut self, robot: &Robot, limits: &Limits) -> Result<()> {
+        if let Some(stop) = StopTorques::new(robot, limits)? {
+            self.stop = stop;
+        }
+        self.restart();
+        Ok(())
+    }
+
+    /// Forgets what held the arm, and the stop.
+    pub fn restart(&mut self) {
+        (self.held_by, self.certified) = (None, false);
+    }
+
+    /// Whether the stop after the last command is certified.
+    pub fn is_certified(&self) -> bool {
+        self.certified
+    }
+
+    /// What holds the arm back, in words.
+    pub fn held_in_words(&self, robot: &Robot) -> Option<String> {
+        let verb = if self.certified { "would need" } else { "needs" };
+        self.held_by.as_ref().map(|overload| overload.in_words(verb, robot))
+    }
+
+    /// Whether a limit holds an arm back whose squared error was `last` in the tick before and is `value` after one of `dt` (s).
+    pub fn holds(&self, last: f64, value: f64, dt: f64) -> bool {
+        self.holds_lately() && value >= last * (1.0 - 2.0 * CREEPING * dt)
+    }
+
+    /// Whether a limit has held the arm back a moment ago.
+    pub fn holds_lately(&self) -> bool {
+        self.held_by.is_some()
+    }
+
+    /// Whether the joints can hold the arm at `q`.
+    pub fn can_hold(&mut self, q: &[f64]) -> bool {
+        self.stop.too_heavy(q).is_none()
+    }
+
+    /// Changes the command `q`, which `others` allow, to one that keeps the limits with the stop after it; a `settled` arm is held by what held
+    /// it before. Returns whether it did.
+    pub fn keep(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>, settled: bool, q: &mut Point) -> bool {
+        match self.within(arm, q) {
+            Ok(used) => {
+                self.certified = true;
+                self.free_for += arm.dt;
+                if !settled && self.free_for > HELD {
+                    self.held_by = None;
+                }
+                if arm.braking_part() < 1.0 && (used < AMPLE || arm.ticks.is_multiple_of(NOW_AND_THEN)) {
+                    self.stop_harder(arm, &mut others, q);
+                }
+                false
+            }
+            Err(failed) => {
+                let wanted = q.clone();
+                let part = self.replace(arm, &mut others, failed, q);
+                if let Some(overload) = failed.filter(|overload| overload.is_at_rest || part < SLOWED) {
+                    (self.held_by, self.free_for) = (self.held_by.filter(|_| !self.certified).or(Some(overload)), 0.0);
+                }
+                *q != wanted
+            }
+        }
+    }
+
+    /// Replaces the command `q`, which `failed`, by one that is certified or the one that brakes. Returns the part of the command that is left.
+    fn replace(
+        &mut self,
+        arm: &mut TrackedArm,
+        others: &mut OtherLimits<'_>,
+        mut failed: Option<Overload>,
+        q: &mut Point,
+    ) -> f64 {
+        let (mut part, stop_part) = (1.0, arm.braking_part());
+        if failed.is_some_and(|overload| overload.is_at_rest) {
+            self.lead_aside(&arm.context(), q);
+            failed = match self.check(arm, others, q) {
+                Ok(()) => {
+                    self.certified = true;
+                    return part;
+                }
+                Err(found) => found,
+            };
+        }
+        let (brake, wanted) = (arm.context().braking(), q.clone());
+        for _ in 0..TRIES {
+            let milder =
+                failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
+            match failed {
+                Some(_) if milder >= LEAST_PART => arm.set_braking_part(milder),
+                Some(found) => part *= self.stop.part_within(&arm.context(), &brake, found.tick),
+                None => part *= 0.5,
+            }
+            if part < SHORTEST {
+                break;
+            }
+            write_within(&brake, &wanted, part, q);
+            failed = match self.check(arm, others, q) {
+                Ok(()) => {
+                    self.certified = true;
+                    return part;
+                }
+                Err(found) => found,
+            };
+        }
+        arm.set_braking_part(stop_part);
+        q.copy_from_slice(&brake);
+        if !self.certified {
+            self.stop_somehow(arm, others, q);
+        }
+        0.0
+    }
+
+    /// Moves the command `q` to the nearest one, by its effect on the task, after which joints can hold the arm at rest, to first order.
+    fn lead_aside(&mut self, context: &StepContext<'_>, q: &mut Point) {
+        let (rest, start) = (context.stop_after(q).rest(), q.clone());
+        let slope = Response::new(context, &rest).slope;
+        let rows = &mut self.rows.rows;
+        rows.clear();
+        self.stop.each_hold(&rest, |beyond, gradient| {
+            let mut row = Row { gradient: [0.0; MAX_DOF], least: beyond, softness: SOFTNESS };
+            (0..q.len()).for_each(|j| row.gradient[j] = -gradient[j] * slope[j]);
+            row.least += dot(&row.gradient[..q.len()], q);
+            rows.push(row);
+        });
+        let aims = if context.robot.tip_count() > 1 { context.aims } else { Aims::default() };
+        self.rows.write(&StepRequest { aims, ..context.request(Towards::Start) }, &start, q);
+    }
+
+    /// Finds a stop for an arm that has none: the hardest that is certified or, failing that, the one that asks for clearly the least torque.
+    fn stop_somehow(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &mut Point) {
+        let (before, mut least) = (arm.braking_part(), None);
+        for part in OTHER_PARTS {
+            arm.set_braking_part(part);
+            let brake = arm.context().braking();
+            match self.check(arm, others, &brake) {
+                Ok(()) => {
+                    self.certified = true;
+                    q.copy_from_slice(&brake);
+                    return;
+                }
+                Err(Some(overload)) if part >= MILDEST && others.allow(&arm.context(), &brake) => {
+                    let used = self.stop.largest(&arm.context(), &brake);
+                    if least.is_none_or(|(_, least, _)| used < CLEARLY_LESS * least) {
+                        least = Some((part, used, overload));
+                    }
+                }
+                Err(_) => {}
+            }
+        }
+        arm.set_braking_part(least.map_or(before, |(part, ..)| part));
+        q.copy_from_slice(&arm.context().braking());
+        self.held_by = least.map(|(.., overload)| overload);
+    }
+
+    /// Makes the stop after the command `q` harder, if that is certified too.
+    fn stop_harder(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &[f64]) {
+        let before = arm.braking_part();
+        arm.set_braking_part((HARDER * before).min(1.0));
+        if self.check(arm, others, q).is_err() {
+            arm.set_braking_part(before);
+        }
+    }
+
+    /// Checks a command and the stop after it; the error is the torque beyond its limit, or none if something else forbids them.
+    fn check(
+        &mut self,
+        arm: &TrackedArm,
+        others: &mut OtherLimits<'_>,
+        q: &[f64],
+    ) -> std::result::Result<(), Option<Overload>> {
+        self.within(arm, q)?;
+        if others.allow(&arm.context(), q) { Ok(()) } else { Err(None) }
+    }
+
+    /// Checks torques, and the position limits of a stop that does not brake with the full acceleration. Returns the largest used part of a torque
+    /// limit in the stop.
+    fn within(&mut self, arm: &TrackedArm, q: &[f64]) -> std::result::Result<f64, Option<Overload>> {
+        if arm.limited.as_ref().is_none_or(|limited| limited.stops_inside(&arm.q, q, &arm.tick_box)) {
+            self.stop.check(&arm.context(), q).map_err(Some)
+        } else {
+            Err(None)
+        }
+    }
+}
+
+impl OtherLimits<'_> {
+    /// Whether the command `q` and the stop after it satisfy all others.
+    fn allow(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        self.pace.as_mut().is_none_or(|pace| pace.allows(context, q))
+            && self.safety.as_mut().is_none_or(|safety| safety.allows_command(context, q))
+    }
+}
+
+impl Overload {
+    /// The joint, its torque and its limit in words; `verb` is what the joint does about the torque.
+    fn in_words(&self, verb: &str, robot: &Robot) -> String {
+        let joint = &robot.joints()[self.joint];
+        let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N m" };
+        let [torque, limit] = [self.torque.abs(), self.limit].map(number);
+        let what = if self.is_at_rest { "hold the arm" } else { "move the arm" };
+        format!("joint '{}' {verb} {torque} {unit} to {what}, its limit is {limit} {unit}", joint.name)
+    }
+}
