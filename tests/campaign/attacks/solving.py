@@ -157,7 +157,8 @@ class PlaceFirst(Attack):
         lower, upper = (np.clip(bound, -TURN, TURN) for bound in arms.bounds(case["joints"]))
         starts = np.random.default_rng(case["starts"]).uniform(lower, upper, (200, len(lower)))
         found = inside(case["joints"], arms.descended(case["joints"], target, starts, rotation=False))
-        q = np.vstack((arms.configurations(case["joints"])[:1], found))  # the first had the pose before its turn
+        # The pose was that of the first, before the turn.
+        q = np.vstack((arms.configurations(case["joints"])[:1], found))
         away, angle = arms.pose_error(arms.kinematics(case["joints"], q)[0], target)
         nearer = (away < 0.1 * TOLERANCE) & (angle < solution.rotation_error - 1e-3)
         if nearer.any():
