@@ -29,7 +29,7 @@ _Motion: TypeAlias = Literal["pose", "position", "rotation"]
 _Goals: TypeAlias = Goal | Iterable[Goal] | None
 _Plant: TypeAlias = KinematicPlant | Callable[[_Array], _Pose] | _Mover
 _Several: TypeAlias = slice | Sequence[int] | Sequence[bool] | NDArray[np.integer] | NDArray[np.bool_]  # as numpy picks
-_TipKey: TypeAlias = str | tuple[str, str]  # a tip, or one as seen from another
+_TipKey: TypeAlias = str | tuple[str, str]  # a tip, one as seen from another, or "center_of_mass"
 _Targets: TypeAlias = _Pose | Mapping[str, _Pose] | Mapping[_TipKey, _Pose]
 _Tasks: TypeAlias = Task | Mapping[str, Task] | Mapping[_TipKey, Task] | None
 _Paths: TypeAlias = Path | Mapping[str, Path | _Pose] | Mapping[_TipKey, Path | _Pose]
@@ -795,7 +795,7 @@ class Limits:
 # --- solvers ------------------------------------------------------------------------------------
 
 class Status(IntEnum):
-    """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.
+    """How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success, and true in conditions.
 
     - `SOLVED`: Within the tolerances.
     - `IMPROVED`: A step of a track that came nearer than the step before, not yet within the tolerance; or a search that reached the value asked for.
@@ -1659,7 +1659,7 @@ class Pointing(Task):
 @disjoint_base
 class Goal:
     """A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
-    `LinkManipulability` or `Clearance`.
+    `LinkManipulability`, `Clearance` or `LeastTorque`.
     """
 
     @property
@@ -1733,6 +1733,23 @@ class Clearance(Goal):
     def up_to(self) -> float:
         """Distance beyond which a pair no longer counts (m)."""
 
+@final
+class LeastTorque(Goal):
+    """Holds the arm up with little torque: minimises the sum of (torque / scale)^2 over the joints, with the torques of `Robot.torques(q)`,
+    payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
+
+    Args:
+        relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+            of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
+            floating base has no motors, and never counts.
+        weight: weight relative to other goals.
+    """
+
+    def __new__(cls, *, relative_to: ArrayLike | None = None, weight: float = 1.0) -> LeastTorque: ...
+    @property
+    def relative_to(self) -> _Array | None:
+        """What the torque of each joint is compared with (n,) (N m, N); None: its torque limit."""
+
 # --- inverse kinematics -------------------------------------------------------------------------
 
 def solve(
@@ -1760,7 +1777,8 @@ def solve(
         robot: the arm.
         target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
             dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
-            "right_tool") gives the pose of the second tip in the frame of the first.
+            "right_tool") gives the pose of the second tip in the frame of the first; "center_of_mass" the position (3,) (m)
+            of the centre of all masses.
         task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
             not all can be met; None: all of it.
         start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
@@ -3036,8 +3054,8 @@ class Tracker:
     def step(self, target: _Targets | None, *, velocity: ArrayLike | None = None, stamp: float | None = None) -> Step:
         """Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
         with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-        ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-        is held there, with priority over all other targets.
+        ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+        all masses. A pair that has reached its target is held there, with priority over all other targets.
 
         Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
         jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at
@@ -3736,7 +3754,7 @@ def state_to_state(
         end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 
     Returns:
-        A `Trajectory` of cubic segments.
+        A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
 
     Raises:
         TypeError: limits that are no `Limits`.
@@ -3793,11 +3811,13 @@ def time_optimal(
         robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
             `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 
-    Equal consecutive rows, as a recording has at rest, are one waypoint.
+    Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
+    says so: by how much which joint jitters, and the `tolerance` that smooths it.
 
     Returns:
         A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-        points. With jerk limits it consists of quintic segments that meet the path at their ends.
+        points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+        or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 
     Raises:
         InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -4692,6 +4712,7 @@ class Trajectory:
         time: the knots (k,) (s), starting at 0.
         coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
         joint_names: n names; None: "q1", "q2" and so on.
+        start_outside: joints that begin outside their limits, each (joint, value, limit), as the attribute says.
 
     For example:
 
@@ -4702,7 +4723,12 @@ class Trajectory:
     """
 
     def __new__(
-        cls, time: ArrayLike, coefficients: ArrayLike, *, joint_names: list[str] | None = None
+        cls,
+        time: ArrayLike,
+        coefficients: ArrayLike,
+        *,
+        joint_names: list[str] | None = None,
+        start_outside: list[tuple[str, float, float]] | None = None,
     ) -> Trajectory: ...
     @staticmethod
     def from_samples(
@@ -4737,6 +4763,11 @@ class Trajectory:
     @property
     def joint_names(self) -> list[str]:
         """Names of the joints, in the order of q."""
+    @property
+    def start_outside(self) -> list[tuple[str, float, float]]:
+        """Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m): of the motions of
+        `state_to_state`, `time_optimal` and plans. Files do not hold them.
+        """
     def max_velocity(self) -> _Array:
         """Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times."""
     def max_acceleration(self) -> _Array:

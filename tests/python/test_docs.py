@@ -159,3 +159,12 @@ def test_prompts_in_docstrings_give_what_they_show() -> None:
     for name, text in documented():
         runner.run(doctest.DocTestParser().get_doctest(text, {"bik": bik}, name, None, 0))
     assert runner.summarize(verbose=False).failed == 0
+
+
+@pytest.mark.parametrize("page", ["doors", "derivatives", "ros2_without_ros"])
+def test_each_door_opens_in_twenty_lines(page: str) -> None:
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    for block in FENCED.findall(text) + SHOWN.findall(text):
+        lines = [line for line in block.splitlines() if line.strip()]
+        is_robot_file = lines[-1] in (")", "]") or "from_urdf" in block
+        assert len(lines) <= 20 or is_robot_file, block

@@ -1,8 +1,11 @@
 """The node `beetle-ik ros` in a process of its own, and cyclonedds here; skipped where that or loopback is missing."""
 
+import gc
 import os
 import re
 import signal
+import socket
+import struct
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -11,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 
 import beetle_ik as bik
 
@@ -24,7 +28,9 @@ os.environ["CYCLONEDDS_URI"] = LOOPBACK  # of this process and of the nodes that
 
 from cyclonedds.core import DDSException  # noqa: E402
 
+from beetle_ik.cli.ros import ros  # noqa: E402
 from beetle_ik.interop.ros import messages as msg  # noqa: E402
+from beetle_ik.interop.ros import node as ros_node  # noqa: E402
 from beetle_ik.interop.ros.dds import Graph, mangled, quality  # noqa: E402
 from beetle_ik.interop.ros.node import Topics  # noqa: E402
 
@@ -92,12 +98,12 @@ class Node:
         )
         self.said: list[str] = []
 
-    def says(self, begin: str) -> str:
+    def says(self, begin: str, part: str = "") -> str:
         """Waits for a line."""
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self.said.append(line.rstrip("\n"))
-            if line.startswith(begin):
+            if line.startswith(begin) and part in line:
                 return self.said[-1]
         raise AssertionError(f"no line {begin!r} in {self.said}")
 
@@ -215,6 +221,47 @@ def test_messages_that_cannot_be_used_are_answered_by_a_line(node: Node, domain:
         "marker m/1: type 9; expected a cube (1), sphere (2) or cylinder (3)"
     )
     assert node.ends() == 0
+
+
+def send_bytes(peer: Peer, domain: int, data: bytes, number: int) -> None:
+    """Sends bytes as a message of the joint states, as a writer without checks would: by a packet of RTPS made here."""
+    writer = peer.writers["states"].get_guid().bytes
+    body = struct.pack("<HH4x", 0, 16) + writer[12:] + struct.pack("<iI", 0, number) + data
+    packet = b"RTPS\x02\x05\x01\x10" + writer[:12] + struct.pack("<BBH", 0x15, 0x05, len(body)) + body
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as port:
+        for participant in range(10):
+            port.sendto(packet, ("127.0.0.1", 7400 + 250 * domain + 11 + 2 * participant))
+
+
+@pytest.mark.parametrize("data", [b"\xff" * 20, b"\0" * 8 + b"\x10\0\0\0abcd", b"\0" * 4])
+def test_bytes_of_no_message_leave_a_line(node: Node, domain: int, data: bytes) -> None:
+    peer = Peer(domain)
+    peer.send("description", msg.String(URDF))
+    node.says("info: ready")
+    peer.send("states", msg.JointState(name=["lift"], position=[]))
+    node.says("error: joint_states: 1 names")  # it hears this writer
+    for number in range(2, 5):
+        send_bytes(peer, domain, b"\0\1\0\0" + data, number)
+    node.says("", "deserialization rt/joint_states/sensor_msgs::msg::dds_::JointState_ failed")
+    exchange(Peer(domain))
+    assert node.ends() == 0
+
+
+def test_an_end_does_not_search_for_garbage(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_node: ros_node.Node) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ros_node.Node, "__init__", lambda *_: None)
+    monkeypatch.setattr(ros_node.Node, "run", interrupted)
+    kept = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
+    try:
+        with pytest.raises(typer.Exit):
+            ros("ur5e")
+        assert gc.get_freeze_count() > 0
+    finally:
+        gc.unfreeze()
+        for each, before in zip((signal.SIGINT, signal.SIGTERM), kept, strict=True):
+            signal.signal(each, before)
 
 
 def test_the_servo_follows_and_stops_when_the_stream_ends(node: Node, domain: int) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NEEDS_MUJOCO = {"29_wrong_model"}  # a program with an argument; the plant it drives has tests of its own
+SIMULATED = {"46_torques_in_mujoco"}
 NEEDS_JAX = {"37_learned_redundancy", "38_hand_eye_by_gradient"}
 GALLERY = sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem not in NEEDS_MUJOCO)
 
@@ -17,6 +18,8 @@ GALLERY = sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem not in
 def test_the_example_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if name in NEEDS_JAX:
         pytest.importorskip("jax", reason="JAX is not installed")
+    if name in SIMULATED:
+        pytest.importorskip("mujoco", reason="MuJoCo is not installed (extra 'sim')")
     monkeypatch.chdir(tmp_path)  # some write files
     runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
     assert plt.get_fignums()

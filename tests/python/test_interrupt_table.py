@@ -276,7 +276,7 @@ SHORT: dict[str, str] = {
             "BroydenBAS.session", "papers.CircleSwarm", "DifferentialEvolution", "papers.Firefly", "papers.Genetic",
             "JacobianTranspose", "KinematicPlant", "LevenbergMarquardt", "MultiStart", "NewtonRaphson",
             "Path.with_orientation", "Sinusoid", "Stop", "WeightedPseudoInverse", "show_versions", "tasks.Orientation",
-            "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.Clearance",
+            "tasks.Pointing", "tasks.Pose", "tasks.Position", "goals.Centring", "goals.Clearance", "goals.LeastTorque",
             "goals.LinkManipulability", "goals.Manipulability", "goals.Posture", "paths.circle", "paths.from_function",
             "paths.hypotrochoid", "paths.letter_m", "paths.pentagram", "paths.rose", "obstacles.Box",
             "obstacles.Capsule", "obstacles.Cylinder", "obstacles.Ellipse", "obstacles.Ellipsoid",

@@ -31,6 +31,45 @@ def test_the_place_is_met_and_the_turn_least(name: str) -> None:
         assert angle <= least_angle(robot, target, 6, seed=i) + 1e-3, (i, found.message)
 
 
+def test_a_branch_between_two_limits_is_found() -> None:
+    """Branches that limits leave a few milliradians of the fourth joint."""
+    random, robot = np.random.default_rng(5), ARMS["hobby"]
+    for _ in range(60):
+        q = robot.random_configurations(1, seed=int(random.integers(1 << 30)))[0]
+        width = 10.0 ** random.uniform(-5.0, -1.0)
+        lower, upper = robot.lower.copy(), robot.upper.copy()
+        for joint in random.choice(3, 2, replace=False):
+            if random.random() < 0.5:
+                lower[joint] = q[joint] - width
+            else:
+                upper[joint] = q[joint] + width
+        turn = 0.01 * random.normal(size=3)
+        limits = bik.Limits(lower=lower, upper=upper)
+        found = bik.solve(robot, turned(robot.fk(q), turn), limits=limits)
+        assert found.position_error < 1e-6, found.message
+        assert found.rotation_error <= np.linalg.norm(turn) + 1e-3, (q, lower, upper)
+
+
+def test_three_joints_carry_a_tool_to_its_place() -> None:
+    """An arm whose tip is on its last axis, so that the last joint moves the tool alone, and not far."""
+    joint = (
+        "<link name='{child}'/><joint name='{child}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
+        "<origin xyz='{xyz}' rpy='{rpy}'/><axis xyz='{axis}'/><limit {range} velocity='1' effort='1'/></joint>"
+    )
+    of_arm = [
+        ("base", "a", "continuous", "0.02 0.27 -0.33", "1.57 -1.57 0", "1 0 0", ""),
+        ("a", "b", "revolute", "0.3 -0.26 -0.05", "-1.57 1.57 -1.57", "0 1 0", "lower='-2.67' upper='2.22'"),
+        ("b", "c", "revolute", "0.28 0.06 -0.06", "-2.46 1.03 -0.01", "0.3 -1.58 -0.12", "lower='-0.3' upper='0.1'"),
+    ]
+    names = ("parent", "child", "kind", "xyz", "rpy", "axis", "range")
+    text = "".join(joint.format(**dict(zip(names, values, strict=True))) for values in of_arm)
+    arm = bik.Robot.from_urdf(f"<robot name='three'><link name='base'/>{text}</robot>")
+    robot = arm.with_tool(bik.pose([0.0, 0.05, -0.01]))
+    for q in robot.random_configurations(300, seed=6):
+        found = bik.solve(robot, turned(robot.fk(q), np.array([0.5, 0.0, -0.4])))
+        assert found.position_error < 1e-6, found.message
+
+
 @pytest.mark.parametrize(("name", "most"), [("hobby", 12.0), ("off_axis", 24.0), ("four", 12.0)])
 def test_the_place_is_met_in_few_evaluations(name: str, most: float) -> None:
     robot, random = ARMS[name], np.random.default_rng(3)

@@ -1,5 +1,6 @@
 """`plan_moves` against random programs, and by name against what nobody can make."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -63,6 +64,117 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
         assert plan.success
         assert faults(robot, robot.fk, program, plan, limits, samples=3000) == []
     assert made >= 3
+
+
+# The least motion of the first and the third leads into a singularity or a limit. The others pass a singularity so
+# closely that a step of the search can meet another branch of configurations.
+FOLLOWABLE = [
+    ("iiwa14", [1.0, 0.4, -0.1, 1.1, 1.2, -0.4, 2.3], [-0.2, -0.3, -0.3]),
+    ("panda", [1.8, 0.3, 1.9, -0.5, 0.0, 2.6, -1.3], [0.1, 0.1, 0.0]),
+    ("panda", [0.2, 0.4, -1.7, -1.4, 0.7, 1.4, 1.7], [0.3, 0.4, 0.1]),
+    ("ur5e", [-0.6, -0.7, -2.2, 1.8, -2.3, -1.4], [0.4, -0.3, 0.3]),
+    ("ur5e", [-0.7, 2.4, -1.5, -2.2, -2.1, 2.5], [0.2, -0.2, -0.2]),
+]
+
+
+@pytest.mark.parametrize(("name", "start", "way"), FOLLOWABLE)
+def test_a_line_that_can_be_followed_is_followed(name: str, start: list[float], way: list[float]) -> None:
+    robot = bik.Robot.named(name)
+    goal = robot.fk(start)
+    goal[:3, 3] += way
+    program = [{"kind": "line", "pose": goal, "speed": 0.1}]
+    plan = bik.plan_moves(robot, moves_of(program), start_q=start, limits=LIMITS)
+    limits = {"velocity": robot.velocity_limit, "acceleration": np.full(robot.dof, ACCELERATION)}
+    assert faults(robot, robot.fk, program, plan, limits, samples=3000) == []
+
+
+def test_random_lines_that_can_be_followed_are_followed() -> None:
+    followed = 0
+    for name in ("ur5e", "panda", "iiwa14", "gen3"):
+        robot = bik.Robot.named(name)
+        lower, upper = np.clip(robot.lower, -3.0, 3.0), np.clip(robot.upper, -3.0, 3.0)
+        for seed in range(12):
+            random = np.random.default_rng(seed)
+            start = np.round(lower + (upper - lower) * random.uniform(0.1, 0.9, robot.dof), int(random.integers(1, 4)))
+            goal = robot.fk(start)
+            goal[:3, 3] += np.round(random.uniform(-0.3, 0.3, 3), 1)
+            if not can_follow(robot, start, goal):
+                continue
+            followed += 1
+            assert bik.plan_moves(robot, [Line(goal)], start_q=start, limits=LIMITS).success, (name, seed)
+    assert followed >= 8
+
+
+def can_follow(robot: bik.Robot, start: np.ndarray, goal: np.ndarray) -> bool:
+    """Whether small steps with the pseudo-inverse reach the end of a line, with room to the limits."""
+    q, begin = start.copy(), robot.fk(start)
+    for part in np.linspace(0.0, 1.0, 80)[1:]:
+        before = q
+        for _ in range(10):
+            pose = robot.fk(q)
+            skew = 0.5 * (begin[:3, :3] @ pose[:3, :3].T - pose[:3, :3] @ begin[:3, :3].T)
+            place = (1 - part) * begin[:3, 3] + part * goal[:3, 3]
+            missing = np.r_[place - pose[:3, 3], skew[2, 1], skew[0, 2], skew[1, 0]]
+            q = q + np.linalg.pinv(robot.jacobian(q), rcond=1e-6) @ missing
+        if np.linalg.norm(missing) > 1e-9 or np.abs(q - before).max() > 0.05:
+            return False
+        if (q < robot.lower + 0.02).any() or (q > robot.upper - 0.02).any():
+            return False
+    return bool(np.linalg.norm(goal[:3, 3] - begin[:3, 3]) > 0.01)
+
+
+def widenable(random: np.random.Generator) -> list[dict[str, Any]]:
+    """Moves along the axes by round lengths, each with the `size` that its blends may take up to half of."""
+    pose, program = UR5.fk(HOME), list[dict[str, Any]]()
+    for _ in range(random.integers(2, 4)):
+        kind, size = str(random.choice(["line", "line", "arc", "joints"])), float(random.choice([0.02, 0.05, 0.1]))
+        speed = [None, 0.05, 0.25, 2.0][random.integers(4)]
+        if kind == "joints":
+            goal = HOME + np.round(random.uniform(-0.3, 0.3, 6), 1)
+            pose = UR5.fk(goal)
+            program.append({"kind": kind, "goal": goal, "size": size})
+            continue
+        first, second = np.eye(3)[random.permutation(3)[:2]] * random.choice([-1.0, 1.0], 2)[:, None]
+        via, pose = pose[:3, 3] + 0.5 * size * (first + second), pose.copy()
+        pose[:3, 3] += size * first
+        given = {"via": via} if kind == "arc" else {}
+        program.append({"kind": kind, "pose": pose, "speed": speed, "size": size, **given})
+    return program
+
+
+@pytest.mark.parametrize("jerk", [None, 100.0], ids=["acceleration", "jerk"])
+def test_more_room_never_makes_a_program_slower(jerk: float | None) -> None:
+    # Under jerk limits the fastest timing is found to some thousandths.
+    most = 1 + 1e-6 if jerk is None else 1.005
+    for seed in range(12 if jerk is None else 6):
+        random = np.random.default_rng(seed)
+        moves, acceleration = widenable(random), float(random.choice([2.0, 5.0, 8.0]))
+
+        def duration(blend: float, speed: float, wider: float, moves: Any = moves, a: float = acceleration) -> float:
+            program = []
+            for i, move in enumerate(moves):
+                given = {key: value for key, value in move.items() if key != "size"}
+                if i + 1 < len(moves):
+                    given["blend"] = blend * min(move["size"], moves[i + 1]["size"])
+                if given.get("speed"):
+                    given["speed"] *= speed
+                program.append(given)
+            limits = bik.Limits(velocity=2.0 * wider, acceleration=a * wider, jerk=jerk and jerk * wider)
+            return bik.plan_moves(UR5, moves_of(program), start_q=HOME, limits=limits).trajectory.duration
+
+        steps = [duration(blend, 1.0, 1.0) for blend in (0.0, 0.1, 0.3, 0.5)]
+        steps += [duration(0.5, 1.5, 1.0), duration(0.5, 1.5, 1.5)]
+        assert all(after <= most * before for before, after in itertools.pairwise(steps)), (seed, steps)
+
+
+def test_the_place_counts_from_the_start_of_a_blended_move() -> None:
+    corner, far = shifted(z=-0.1), shifted(y=2.0, z=-0.1)
+    places = []
+    for blend in (0.0, 0.01, 0.04):
+        with pytest.raises(Invalid, match=r"move 1 cannot be reached: (.*) m along it") as error:
+            bik.plan_moves(UR5, [Line(corner, blend=blend), Line(far)], start_q=HOME, limits=LIMITS)
+        places.append(float(str(error.value).split(": ")[1].split(" m along")[0]))
+    assert np.ptp(places) < 5e-3
 
 
 def test_the_judge_notices_what_is_wrong() -> None:

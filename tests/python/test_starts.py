@@ -252,6 +252,39 @@ def test_a_retreat_begins_at_the_reading() -> None:
     assert np.all(q[:, 1] >= start[1] - 1e-9)
 
 
+@pytest.mark.parametrize("beyond", BEYOND)
+def test_bare_motions_say_what_they_lead_inside(beyond: float) -> None:
+    start, around = below(beyond), bik.Limits(lower=PANDA.lower, upper=PANDA.upper, velocity=1.0, acceleration=5.0)
+    led = ("panda_joint2", start[1], PANDA.lower[1])
+    direct = bik.state_to_state(start, INSIDE, LIMITS, robot=PANDA)
+    for motion in (direct, bik.time_optimal([start, INSIDE], LIMITS, robot=PANDA), direct.then(direct_back(direct))):
+        assert motion.start_outside == [led]
+        assert repr(motion).endswith(" knots, leads 'panda_joint2' inside>")
+        assert pickle.loads(pickle.dumps(motion)).start_outside == [led]
+        assert motion == bik.Trajectory(motion.time, motion.coefficients, joint_names=motion.joint_names)
+    for motion in (bik.state_to_state(start, INSIDE, around), bik.time_optimal([start, INSIDE], around)):
+        assert motion.start_outside == [("q2", *led[1:])]
+    plan = bik.plan_point_to_point(PANDA, start_q=start, end_q=INSIDE, limits=LIMITS)
+    assert plan.trajectory.start_outside == plan.start_outside == [led]
+
+
+@pytest.mark.parametrize("beyond", [*ROUNDING, 0.0])
+def test_bare_motions_from_inside_lead_nothing(beyond: float) -> None:
+    start = below(beyond)
+    for motion in (
+        bik.state_to_state(start, INSIDE, LIMITS, robot=PANDA),
+        bik.time_optimal([start, INSIDE], LIMITS, robot=PANDA),
+        bik.Trajectory.from_samples([0.0, 1.0], [start, INSIDE]),
+    ):
+        assert motion.start_outside == []
+        assert repr(motion).endswith(" knots>")
+
+
+def direct_back(motion: bik.Trajectory) -> bik.Trajectory:
+    """A motion from the end of another to a configuration inside."""
+    return bik.state_to_state(motion.q[-1], PANDA.clip(np.zeros(7)), LIMITS, joint_names=motion.joint_names)
+
+
 def test_state_to_state_leads_a_start_inside() -> None:
     limits = bik.Limits(lower=-1.0, upper=1.0, velocity=1.0, acceleration=5.0, jerk=50.0)
     motion = bik.state_to_state([-1.05], [0.5], limits)

@@ -3,6 +3,10 @@
 import json
 import logging
 import re
+import subprocess
+import sys
+import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -100,12 +104,86 @@ def test_the_noise_of_an_encoder_costs_no_time() -> None:
     limits = bik.Limits(velocity=2.0, acceleration=10.0, jerk=100.0)
     fastest = bik.time_optimal(clean[::20], limits).duration
     motion = bik.time_optimal(recorded, limits, tolerance=2 * step)
-    assert motion.duration < 1.02 * fastest < 0.3 * bik.time_optimal(recorded, limits).duration
+    with pytest.warns(UserWarning, match="this noise sets the duration"):
+        exact = bik.time_optimal(recorded, limits)
+    assert motion.duration < 1.02 * fastest < 0.3 * exact.duration
     passed = motion.sample(1e-3)[1]
     missed = [np.abs(passed - row).max(axis=1).min() for row in recorded[::20]]
     assert max(missed) <= 2 * step + 1e-3  # joints move by less between two samples
     each = bik.time_optimal(recorded, limits, tolerance=[2 * step] * 4)
     assert each.duration == motion.duration
+
+
+def recording(rng: np.random.Generator, rows: int, joints: int) -> np.ndarray:
+    """A slow motion, sampled closely: of sines, or of a spline through a few places with rests."""
+    at = np.linspace(0, 1, rows)[:, None]
+    if rng.random() < 0.5:
+        return np.asarray(0.8 * np.sin(2 * np.pi * at * rng.uniform(0.3, 3, joints) + rng.uniform(0, 6, joints)))
+    places = np.round(rng.uniform(-1, 1, (6, joints)), int(rng.integers(0, 3)))
+    whole = np.minimum((5 * at).astype(int), 4)
+    part = np.clip(1.3 * (5 * at - whole), 0, 1)
+    smooth = part**3 * (10 - 15 * part + 6 * part**2)
+    return np.asarray(places[whole[:, 0]] * (1 - smooth) + places[whole[:, 0] + 1] * smooth)
+
+
+@pytest.mark.parametrize("jerk", [None, 100.0])
+def test_noise_that_sets_the_duration_is_told(jerk: float | None) -> None:
+    limits = bik.Limits(velocity=2.0, acceleration=10.0, jerk=jerk)
+    told = re.compile(r"joint 'q\d' jitters by (.*) from row to row, and this noise sets the duration: (.*) s, "
+                      r"without it about (.*) s; give tolerance=(.*), which smooths it")  # fmt: skip
+    told_of = 0
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        rows = recording(rng, int(rng.integers(300, 900)), int(rng.integers(1, 7)))
+        step = float(rng.choice([2 * np.pi / 4096, 1e-3, 0.005]))
+        noisy = np.round(rows / step) * step if seed % 2 else rows + 0.3 * step * rng.normal(size=rows.shape)
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            exact = bik.time_optimal(noisy, limits)
+        if not warned:
+            # It costs little.
+            assert exact.duration < 1.3 * bik.time_optimal(noisy, limits, tolerance=2 * step).duration
+            continue
+        told_of += 1
+        said = told.fullmatch(str(warned[0].message))
+        assert said is not None, str(warned[0].message)
+        jitter, duration, without, tolerance = map(float, said.groups())
+        assert 0.2 * step < jitter < 2.5 * step
+        assert duration == pytest.approx(exact.duration, rel=1e-3)
+        # What it says comes true, and is then not said again.
+        smooth = bik.time_optimal(noisy, limits, tolerance=tolerance)
+        assert smooth.duration <= 1.02 * without < 0.82 * duration
+        with pytest.warns(UserWarning, match=f"give tolerance={said[4]}, "):
+            bik.time_optimal(noisy, limits, tolerance=0.1 * jitter)
+    assert told_of >= 3
+
+
+def test_the_command_line_tells_of_noise_in_its_own_words(tmp_path: Path) -> None:
+    at, file = np.linspace(0, 6, 400), tmp_path / "recorded.csv"
+    file.write_text("joint\n" + "\n".join(f"{q:.3f}" for q in np.sin(at) + 2e-3 * (np.arange(400) % 2)))
+    command = [sys.executable, "-m", "beetle_ik", "plan", "retime", str(file), "--acceleration-limit", "10"]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert ran.stderr.startswith("Warning: joint 'joint' jitters by 0.00")
+    assert re.search(r" s; give --tolerance 0\.00\d+, which smooths it\n$", ran.stderr)
+
+
+def test_paths_without_noise_are_not_called_noisy() -> None:
+    limits = bik.Limits(velocity=2.0, acceleration=10.0)
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        rows, joints = int(rng.choice([2, 3, 50, 200, 500])), int(rng.integers(1, 7))
+        clean = recording(rng, rows, joints)
+        chosen = [
+            clean,
+            np.round(clean, 9),
+            np.repeat(clean, 2, axis=0),
+            rng.uniform(-1, 1, (12, joints)),
+            # Places to go back and forth between are a motion, however many.
+            np.tile([[0.0] * joints, [0.1] * joints], (60, 1)),
+        ]
+        for path in chosen:
+            if np.ptp(path, axis=0).max() > 0:
+                bik.time_optimal(path, limits)  # every warning is an error here
 
 
 LIMITS = bik.Limits(velocity=1.0, acceleration=1.0)

@@ -138,7 +138,11 @@ def test_an_approach_that_touches_an_obstacle_is_not_made() -> None:
 def test_an_arm_that_hunts_about_a_posture_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     def hunting(_: Arm) -> SimpleNamespace:  # the null space beside a singular posture
         return SimpleNamespace(
-            q=START + 0.01 * (-1) ** next(turns), position_error=0.01, rotation_error=0.0, success=False
+            q=START + 0.01 * (-1) ** next(turns),
+            qd=np.zeros(7),
+            position_error=0.01,
+            rotation_error=0.0,
+            success=False,
         )
 
     turns = count()

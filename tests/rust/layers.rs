@@ -37,7 +37,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
     ("manipulability", &["kinematics", "robot"]),
     ("calibration", &["robot", "obstacle"]),
-    ("task", &["kinematics", "robot", "obstacle", "manipulability", "objective"]),
+    ("task", &["kinematics", "dynamics", "robot", "obstacle", "manipulability", "objective"]),
     ("constraint", &["kinematics", "dynamics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
     ("solver", &["objective"]),
     ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),

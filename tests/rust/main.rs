@@ -32,6 +32,7 @@ mod closed_form {
 }
 mod dynamics {
     mod laws;
+    mod least_torque;
 }
 mod error {
     mod promised;

@@ -18,11 +18,12 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<PyCentring>()?;
     module.add_class::<PyManipulability>()?;
     module.add_class::<PyLinkManipulability>()?;
-    module.add_class::<PyClearance>()
+    module.add_class::<PyClearance>()?;
+    module.add_class::<PyLeastTorque>()
 }
 
 /// A secondary objective, optimised in the null space of the task: `Posture`, `Centring`, `Manipulability`,
-/// `LinkManipulability` or `Clearance`.
+/// `LinkManipulability`, `Clearance` or `LeastTorque`.
 #[pyclass(name = "Goal", module = "beetle_ik.goals", frozen, subclass, eq)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct PyGoal {
@@ -56,6 +57,10 @@ impl PyGoal {
                 format!("goals.LinkManipulability(motion='{motion}', weight={weight:?})")
             }
             Goal::Clearance { up_to, .. } => format!("goals.Clearance(weight={weight:?}, up_to={up_to:?})"),
+            Goal::LeastTorque { relative_to: None, .. } => format!("goals.LeastTorque(weight={weight:?})"),
+            Goal::LeastTorque { relative_to: Some(scale), .. } => {
+                format!("goals.LeastTorque(relative_to={scale:?}, weight={weight:?})")
+            }
         }
     }
 
@@ -84,6 +89,12 @@ impl PyGoal {
             }
             Goal::Clearance { up_to, .. } => {
                 options.set_item("up_to", *up_to)?;
+                PyTuple::empty(py)
+            }
+            Goal::LeastTorque { relative_to, .. } => {
+                if let Some(scale) = relative_to {
+                    options.set_item("relative_to", row(py, scale.clone()))?;
+                }
                 PyTuple::empty(py)
             }
         };
@@ -213,6 +224,37 @@ impl PyClearance {
         match self_.as_super().core {
             Goal::Clearance { up_to, .. } => up_to,
             _ => f64::NAN,
+        }
+    }
+}
+
+/// Holds the arm up with little torque: minimises the sum of (torque / scale)^2 over the joints, with the torques of `Robot.torques(q)`,
+/// payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
+///
+/// Args:
+///     relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+///         of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
+///         floating base has no motors, and never counts.
+///     weight: weight relative to other goals.
+#[pyclass(name = "LeastTorque", module = "beetle_ik.goals", extends = PyGoal, frozen)]
+pub struct PyLeastTorque;
+
+#[pymethods]
+impl PyLeastTorque {
+    #[new]
+    #[pyo3(signature = (*, relative_to=None, weight=1.0))]
+    fn new(relative_to: Option<&Bound<'_, PyAny>>, weight: f64) -> PyResult<PyClassInitializer<Self>> {
+        let relative_to = relative_to.map(|scale| vector("relative_to", scale)).transpose()?;
+        made(Goal::LeastTorque { relative_to, weight }, Self)
+    }
+
+    /// What the torque of each joint is compared with (n,) (N m, N); None: its torque limit.
+    #[getter]
+    fn relative_to<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let py = self_.py();
+        match &self_.as_super().core {
+            Goal::LeastTorque { relative_to, .. } => relative_to.clone().map(|scale| row(py, scale)),
+            _ => None,
         }
     }
 }

@@ -153,7 +153,8 @@ impl PySolution {
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m) with the orientation left free. For a robot with several `tips`, a
 ///         dict from tips to targets, for example {"left_tool": T}; a tip left out is free. The key ("left_tool",
-///         "right_tool") gives the pose of the second tip in the frame of the first.
+///         "right_tool") gives the pose of the second tip in the frame of the first; "center_of_mass" the position (3,) (m)
+///         of the centre of all masses.
 ///     task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
 ///         not all can be met; None: all of it.
 ///     start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.

@@ -21,7 +21,7 @@ use crate::options::list_text;
 use crate::pickling::{Reduced, bytes, restored_from};
 use crate::robot::PyRobot;
 use crate::task::{read_task, task_object};
-use crate::tip_keys::{TipKey, in_words, key_object, read_key, subject, tips_in_words};
+use crate::tip_keys::{CENTER_OF_MASS, TipKey, in_words, key_object, read_key, subject, tips_in_words};
 use crate::wording::spelt;
 
 /// What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
@@ -154,6 +154,7 @@ impl PyKeep {
         let names: Vec<&str> = robot.tips().collect();
         let key = match keep.task().subject {
             Subject::Tip(_) if names.len() == 1 => None,
+            Subject::CenterOfMass => Some(vec![CENTER_OF_MASS.to_owned()]),
             Subject::Tip(tip) => Some(vec![names[tip].to_owned()]),
             Subject::Pair { from, of } => Some([from, of].map(|tip| names[tip].to_owned()).to_vec()),
         };

@@ -34,7 +34,7 @@ use crate::trajectory::{PyTrajectory, names};
 ///     end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
 ///
 /// Returns:
-///     A `Trajectory` of cubic segments.
+///     A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
 ///
 /// Raises:
 ///     TypeError: limits that are no `Limits`.
@@ -90,7 +90,10 @@ pub fn state_to_state(
             limits
         }
     };
-    motion::state_to_state_from(&from, &to, &limits, &slack).map(PyTrajectory::from).map_err(raise)
+    let core = motion::state_to_state_from(&from, &to, &limits, &slack).map_err(raise)?;
+    // The motion was found, so its start is taken.
+    let led = limits.admit_start(robot.map(|robot| &*robot.core), "q0", &from.q, &slack).map_err(raise)?;
+    Ok(PyTrajectory::led(core, &led.outside))
 }
 
 /// Reads a state; velocities and accelerations that are not given are zero.

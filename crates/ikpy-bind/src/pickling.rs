@@ -21,3 +21,28 @@ pub fn restored_from<'py, T: PyTypeInfo>(
 pub fn bytes(py: Python<'_>, stored: ikcore::Result<Vec<u8>>) -> PyResult<Bound<'_, PyBytes>> {
     Ok(PyBytes::new(py, &stored.map_err(raise)?))
 }
+
+/// Gives a frozen class that wraps one core value its hash and its pickling; `what` names it in the error of bytes that are no such value.
+macro_rules! stored_value {
+    ($class:ident, $what:literal) => {
+        #[pymethods]
+        impl $class {
+            fn __hash__(&self) -> u64 {
+                $crate::hash::content_hash(self)
+            }
+
+            fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<$crate::pickling::Reduced<'py>> {
+                let stored = $crate::pickling::bytes(py, ikcore::stored::to_bytes($what, &self.0))?;
+                $crate::pickling::restored_from::<Self>(py, (stored,))
+            }
+
+            /// Restores a pickled value.
+            #[staticmethod]
+            fn _restore(bytes: &[u8]) -> PyResult<Self> {
+                ikcore::stored::from_bytes($what, bytes).map(Self).map_err($crate::error::raise)
+            }
+        }
+    };
+}
+
+pub(crate) use stored_value;

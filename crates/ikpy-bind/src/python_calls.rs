@@ -1,5 +1,6 @@
 //! Calls into the Python package: plots, files, models of other libraries and the progress bar. No other file calls it.
 
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -62,9 +63,14 @@ pub fn log(py: Python<'_>, function: &str, message: &str) -> PyResult<()> {
     call(py, "logging", "getLogger", ("beetle_ik",))?.call_method1("info", ("%s", message)).map(|_| ())
 }
 
-/// Calls `beetle_ik.calls.units.warn(message)`, which raises a `UnitsWarning` in the caller's file.
+/// Calls `beetle_ik.calls.warned.warn(message)`, which raises a `UnitsWarning` in the caller's file.
 pub fn warn_of_units(py: Python<'_>, message: &str) -> PyResult<()> {
-    call(py, "beetle_ik.calls.units", "warn", (message,)).map(|_| ())
+    call(py, "beetle_ik.calls.warned", "warn", (message,)).map(|_| ())
+}
+
+/// Calls `beetle_ik.calls.warned.warn(message, UserWarning)`, which raises a `UserWarning` in the caller's file.
+pub fn warn_user(py: Python<'_>, message: &str) -> PyResult<()> {
+    call(py, "beetle_ik.calls.warned", "warn", (message, py.get_type::<PyUserWarning>())).map(|_| ())
 }
 
 /// Makes a progress bar on the terminal.

@@ -1,4 +1,4 @@
-//! Keys of dicts for several tips: names of tips, or pairs of them.
+//! Keys of dicts for several tips: names of tips, pairs of them, or the centre of mass.
 
 use std::sync::Arc;
 
@@ -9,6 +9,9 @@ use pyo3::types::{PyString, PyTuple};
 
 use crate::convert::summary;
 use crate::error::{invalid, raise};
+
+/// Key of the centre of mass, unless a tip has this name.
+pub const CENTER_OF_MASS: &str = "center_of_mass";
 
 /// Name of a tip, or names of two tips: the second in the frame of the first.
 pub type TipKey = Vec<String>;
@@ -41,10 +44,13 @@ pub fn read_key(what: &str, key: &Bound<'_, PyAny>) -> PyResult<TipKey> {
     names.map_err(wrong)
 }
 
-/// Returns the pose that a key selects: of a tip, or of one tip in the frame of another.
+/// Returns what a key selects: a tip, one tip in the frame of another, or the centre of mass.
 pub fn subject(robot: &Robot, key: &TipKey) -> PyResult<Subject> {
     let number = |name: &String| robot.tip_number(name).map_err(raise);
     match &key[..] {
+        [tip] if tip == CENTER_OF_MASS && robot.tip_number(tip).is_err() => {
+            Subject::center_of_mass(robot).map_err(raise)
+        }
         [tip] => number(tip).map(Subject::Tip),
         [from, of, ..] => Ok(Subject::Pair { from: number(from)?, of: number(of)? }),
         [] => Err(invalid("a key without a tip".into())),

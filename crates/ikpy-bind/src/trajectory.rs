@@ -1,19 +1,23 @@
 //! `Trajectory`.
 
 use ikcore::interrupt::checkpoint_at;
+use ikcore::limits::JointOutside;
 use ikcore::robot::{Motions, Robot};
 use ikcore::trajectory::{Coefficients, POWERS, Trajectory};
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-use crate::convert::{Array, array, copied, counted, is_list, own, row, shape_text, shortened, table, times, vector};
-use crate::error::{invalid, raise};
+use crate::convert::{
+    Array, array, copied, counted, is_list, own, row, shape_text, shortened, summary, table, times, vector,
+};
+use crate::error::{invalid, misfit, raise};
 use crate::hash::content_hash;
 use crate::monitor::long_call;
 use crate::options::NewArguments;
 use crate::python_calls;
 use crate::robot::PyRobot;
+use crate::start_gate::{Outside, plain};
 
 /// A joint trajectory of polynomial segments between knots: q_j(t) = sum over p of coefficients[i, j, p] (t - time[i])^p.
 ///
@@ -21,6 +25,7 @@ use crate::robot::PyRobot;
 ///     time: the knots (k,) (s), starting at 0.
 ///     coefficients: (k - 1, n, degree + 1), in ascending powers; the degree is at most 6.
 ///     joint_names: n names; None: "q1", "q2" and so on.
+///     start_outside: joints that begin outside their limits, each (joint, value, limit), as the attribute says.
 ///
 /// For example:
 ///
@@ -29,18 +34,33 @@ use crate::robot::PyRobot;
 ///     >>> float(q[0]), float(qd[0])
 ///     (0.25, 0.5)
 #[pyclass(name = "Trajectory", module = "beetle_ik", frozen, eq)]
-#[derive(Debug, PartialEq)]
-pub struct PyTrajectory(Trajectory);
+#[derive(Debug)]
+pub struct PyTrajectory {
+    core: Trajectory,
+    start_outside: Vec<Outside>,
+}
 
 impl From<Trajectory> for PyTrajectory {
     fn from(core: Trajectory) -> Self {
-        Self(core)
+        Self { core, start_outside: vec![] }
+    }
+}
+
+/// The motion alone counts: files do not hold where its limits are.
+impl PartialEq for PyTrajectory {
+    fn eq(&self, other: &Self) -> bool {
+        self.core == other.core
     }
 }
 
 impl PyTrajectory {
+    /// Motion that leads the joints `outside` their limits inside.
+    pub fn led(core: Trajectory, outside: &[JointOutside]) -> Self {
+        Self { core, start_outside: plain(outside) }
+    }
+
     pub fn core(&self) -> &Trajectory {
-        &self.0
+        &self.core
     }
 }
 
@@ -56,11 +76,12 @@ pub fn names(given: Option<Vec<String>>, n: usize) -> PyResult<Vec<String>> {
 #[pymethods]
 impl PyTrajectory {
     #[new]
-    #[pyo3(signature = (time, coefficients, *, joint_names=None))]
+    #[pyo3(signature = (time, coefficients, *, joint_names=None, start_outside=None))]
     fn new(
         time: &Bound<'_, PyAny>,
         coefficients: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
+        start_outside: Option<Vec<Outside>>,
     ) -> PyResult<Self> {
         let values = array("coefficients", coefficients)?;
         let &[_, n, powers @ 1..=POWERS] = values.shape() else {
@@ -75,7 +96,8 @@ impl PyTrajectory {
             polynomial
         });
         let (joints, knots, coefficients) = (names(joint_names, n)?, vector("time", time)?, padded.collect());
-        long_call(time.py(), || Trajectory::new(joints, knots, coefficients)).map(Self)
+        let core = long_call(time.py(), || Trajectory::new(joints, knots, coefficients))?;
+        Ok(Self { core, start_outside: start_outside.unwrap_or_default() })
     }
 
     /// Makes a trajectory through samples q (k, n) at `time` (k,) (s). Segments are linear; cubic if velocities qd (k, n)
@@ -106,20 +128,20 @@ impl PyTrajectory {
         let qd = qd.map(|value| read("qd", value)).transpose()?.map(|(values, _)| values);
         let qdd = qdd.map(|value| read("qdd", value)).transpose()?.map(|(values, _)| values);
         let joints = names(joint_names.or(columns), n)?;
-        long_call(py, || Trajectory::from_samples(joints, &time, &q, qd.as_deref(), qdd.as_deref())).map(Self)
+        long_call(py, || Trajectory::from_samples(joints, &time, &q, qd.as_deref(), qdd.as_deref())).map(Self::from)
     }
 
     /// The knots (k,) (s).
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        copied(py, self.0.knots())
+        copied(py, self.core.knots())
     }
 
     /// Coefficients (k - 1, n, degree + 1), in ascending powers of the time since the knot.
     #[getter]
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let (polynomials, n) = (self.0.coefficients(), self.0.joints().len());
-        let powers = self.0.degree() + 1;
+        let (polynomials, n) = (self.core.coefficients(), self.core.joints().len());
+        let powers = self.core.degree() + 1;
         let used = polynomials.iter().flat_map(|polynomial| polynomial[..powers].iter().copied()).collect();
         table(py, used, &[polynomials.len() / n, n, powers])
     }
@@ -127,48 +149,55 @@ impl PyTrajectory {
     /// Positions at the knots (k, n) (rad, m).
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        Ok(self.at_times(py, self.0.knots(), false)?.0)
+        Ok(self.at_times(py, self.core.knots(), false)?.0)
     }
 
     /// Velocities at the knots (k, n) (rad/s, m/s), of the segment that begins there.
     #[getter]
     fn qd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        Ok(self.at_times(py, self.0.knots(), false)?.1)
+        Ok(self.at_times(py, self.core.knots(), false)?.1)
     }
 
     /// Accelerations at the knots (k, n) (rad/s^2, m/s^2), of the segment that begins there.
     #[getter]
     fn qdd<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        Ok(self.at_times(py, self.0.knots(), false)?.2)
+        Ok(self.at_times(py, self.core.knots(), false)?.2)
     }
 
     /// Duration (s).
     #[getter]
     fn duration(&self) -> f64 {
-        self.0.duration()
+        self.core.duration()
     }
 
     /// Names of the joints, in the order of q.
     #[getter]
     fn joint_names(&self) -> Vec<String> {
-        self.0.joints().to_vec()
+        self.core.joints().to_vec()
+    }
+
+    /// Joints that begin outside their limits and are led inside, each (joint, value, limit) (rad, m): of the motions of
+    /// `state_to_state`, `time_optimal` and plans. Files do not hold them.
+    #[getter]
+    fn start_outside(&self) -> Vec<Outside> {
+        self.start_outside.clone()
     }
 
     /// Returns the largest speed of each joint (n,) (rad/s, m/s), exact over all times.
     fn max_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(own(row(py, long_call(py, || Ok(self.0.max_velocity()))?)))
+        Ok(own(row(py, long_call(py, || Ok(self.core.max_velocity()))?)))
     }
 
     /// Returns the largest acceleration of each joint (n,) (rad/s^2, m/s^2), exact within the segments. Jumps of the
     /// velocity at knots are not included.
     fn max_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(own(row(py, long_call(py, || Ok(self.0.max_acceleration()))?)))
+        Ok(own(row(py, long_call(py, || Ok(self.core.max_acceleration()))?)))
     }
 
     /// Returns the largest jerk of each joint (n,) (rad/s^3, m/s^3), exact within the segments. Jumps of the acceleration
     /// at knots are not included.
     fn max_jerk<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(own(row(py, long_call(py, || Ok(self.0.max_jerk()))?)))
+        Ok(own(row(py, long_call(py, || Ok(self.core.max_jerk()))?)))
     }
 
     /// Returns (q, qd, qdd) at t (s): (n,) each for a number, (k, n) for t (k,). Times outside the trajectory are clamped.
@@ -182,9 +211,15 @@ impl PyTrajectory {
     fn sample<'py>(
         &self,
         py: Python<'py>,
-        dt: f64,
+        dt: &Bound<'py, PyAny>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Array<'py>, Array<'py>, Array<'py>)> {
-        let times = self.0.sample_times(dt).map_err(raise)?;
+        let dt: f64 = dt.extract().map_err(|_| {
+            misfit(format!(
+                "dt must be a number of seconds, got {}; at(t) gives the motion at given times",
+                summary(dt)
+            ))
+        })?;
+        let times = self.core.sample_times(dt).map_err(raise)?;
         let (q, qd, qdd) = self.at_times(py, &times, false)?;
         Ok((own(row(py, times)), q, qd, qdd))
     }
@@ -201,7 +236,8 @@ impl PyTrajectory {
     /// Returns this trajectory followed by a rest of `pause` (s) and by `motion`, which must begin where this one ends.
     #[pyo3(signature = (motion, *, pause=0.0))]
     fn then(&self, py: Python<'_>, motion: &Self, pause: f64) -> PyResult<Self> {
-        long_call(py, || self.0.then(&motion.0, pause)).map(Self)
+        let core = long_call(py, || self.core.then(&motion.core, pause))?;
+        Ok(Self { core, start_outside: self.start_outside() })
     }
 
     /// Writes samples as CSV: every `dt` (s) and at the end; None: at the knots. The file appears complete or not at all.
@@ -237,11 +273,13 @@ impl PyTrajectory {
     }
 
     fn __repr__(&self) -> String {
+        let led: Vec<String> = self.start_outside.iter().map(|(joint, ..)| format!("'{joint}'")).collect();
+        let led = if led.is_empty() { String::new() } else { format!(", leads {} inside", led.join(" and ")) };
         format!(
-            "<Trajectory of {}, {} s, {} knots>",
-            counted(self.0.joints().len(), "joint"),
-            shortened(self.0.duration()),
-            self.0.knots().len()
+            "<Trajectory of {}, {} s, {} knots{led}>",
+            counted(self.core.joints().len(), "joint"),
+            shortened(self.core.duration()),
+            self.core.knots().len()
         )
     }
 
@@ -251,14 +289,18 @@ impl PyTrajectory {
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<NewArguments<'py>> {
         let arguments = (self.time(py), self.coefficients(py)?).into_pyobject(py)?;
-        Ok((arguments, [("joint_names", self.joint_names())].into_py_dict(py)?))
+        let named = [("joint_names", self.joint_names())].into_py_dict(py)?;
+        if !self.start_outside.is_empty() {
+            named.set_item("start_outside", self.start_outside())?;
+        }
+        Ok((arguments, named))
     }
 }
 
 impl PyTrajectory {
     /// Returns the torques that cause this motion of `robot` at `t`.
     pub fn torques_of<'py>(&self, py: Python<'py>, robot: &Robot, t: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
-        let (n, joints) = (robot.dof(), self.0.joints().len());
+        let (n, joints) = (robot.dof(), self.core.joints().len());
         if n != joints {
             let (name, theirs, ours) = (robot.name(), counted(n, "joint"), counted(joints, "joint"));
             return Err(invalid(format!("robot '{name}' has {theirs}, and the trajectory {ours}")));
@@ -278,13 +320,13 @@ impl PyTrajectory {
         times: &[f64],
         single: bool,
     ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
-        let n = self.0.joints().len();
+        let n = self.core.joints().len();
         let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; times.len() * n]);
         let mut fill = || {
             for (i, t) in times.iter().enumerate() {
                 checkpoint_at(i)?;
                 let row = i * n..(i + 1) * n;
-                self.0.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row])?;
+                self.core.at(*t, &mut q[row.clone()], &mut qd[row.clone()], &mut qdd[row])?;
             }
             Ok(())
         };

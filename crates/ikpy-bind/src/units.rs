@@ -107,6 +107,7 @@ pub fn of_point(robot: &Robot, what: &str, subject: Subject, position: &[f64; 3]
     match subject {
         Subject::Tip(tip) => units::of_position(robot, what, &[tip], position),
         Subject::Pair { from, of } => units::of_position(robot, what, &[from, of], position),
+        Subject::CenterOfMass => units::of_center_of_mass(robot, what, position),
     }
 }
 

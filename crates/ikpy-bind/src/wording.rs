@@ -12,6 +12,7 @@ pub fn spelt(setting: &Setting) -> String {
     let words = match setting {
         Setting::Limit(kind) => return format!("limits=Limits({}=...)", kind.replace(' ', "_")),
         Setting::Method(name) => return format!("method=\"{name}\""),
+        Setting::Tolerance(value) => return format!("tolerance={value}"),
         Setting::First(part) => return format!("task=tasks.Pose(first=\"{part}\")"),
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
         Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),

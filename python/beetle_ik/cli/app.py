@@ -59,8 +59,8 @@ class _Commands(TyperGroup):
 
 
 def _show_warning(others: Any, message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
-    """Prints a warning about units as one line; `others` shows those of other libraries."""
-    if issubclass(category, UnitsWarning):
+    """Prints a warning of this library, or one for users, as one line; `others` shows those of other libraries."""
+    if category in (UnitsWarning, UserWarning):
         typer.echo(f"Warning: {in_options(message)}", err=True)
     else:
         others(message, category, *place, **more)

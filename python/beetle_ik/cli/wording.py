@@ -14,6 +14,7 @@ _OPTIONS = {
     "tilt must be": "--tilt must be",
     "the length of axis": "the length of --up",
     "margin=": "--margin",
+    "give tolerance=": "give --tolerance ",
     "joint_weights": "--joint-weights",
     "obstacles= (a list, which may be empty) or self_collision=True": "--scene",
     "scene.attach_to(robot)": "a robot that carries it (Scene.attach_to in Python)",

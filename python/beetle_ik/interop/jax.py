@@ -157,7 +157,7 @@ def smoothness(path: Array, *, order: int = 2, weights: Any = 1.0) -> Array:
 
 @lru_cache(maxsize=64)
 def _fk(robot: Robot, link: str | None) -> Callable[[Array], Array]:
-    jnp, tips = _jax().numpy, _tips(robot, link)
+    jnp, tips = _jax().numpy, checks.axis_of_tips(robot, link)
     jacobian_of = _jacobian(robot, link)
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
@@ -184,7 +184,9 @@ def _jacobian(robot: Robot, link: str | None) -> Callable[[Array], Array]:
         return differentiable(q), jnp.einsum("...ijk,...k->...ij", bend(q), motion)
 
     differentiable = _with_rule(
-        lambda q: _call(partial(robot.jacobian, link=link), (q,), (1,), (*_tips(robot, link), 6, robot.dof)),
+        lambda q: _call(
+            partial(robot.jacobian, link=link), (q,), (1,), (*checks.axis_of_tips(robot, link), 6, robot.dof)
+        ),
         rule,
     )
     return differentiable
@@ -253,11 +255,6 @@ def _clearance(robot: Robot, scene: Scene) -> Callable[[Array], Array]:
 
 def _jax() -> Any:
     return library("jax", "jax", "interop.jax", extra="jax")
-
-
-def _tips(robot: Robot, link: str | None) -> tuple[int, ...]:
-    """Returns the axis of the tips, if there are several."""
-    return () if link is not None or len(robot.tips) == 1 else (len(robot.tips),)
 
 
 def _joints(name: str, q: Array, robot: Robot) -> Array:

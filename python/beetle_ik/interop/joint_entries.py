@@ -1,5 +1,6 @@
 """Arrays of joint positions in the order of others, with entries of joints that do not move the arm."""
 
+import math
 from collections.abc import Collection, Sequence
 from typing import TypeAlias
 
@@ -46,6 +47,7 @@ class JointEntries:
         # From the units of the entries to rad and m.
         self._unit = np.where(turns, np.pi / 180, 1.0)
         self.at = [self.names.index(joint) for joint in robot.joint_names]
+        self._places = _indices(self.at)
 
     def read(self, name: str, values: ArrayLike) -> Array:
         """Returns an array of entries (k,), a copy, checked."""
@@ -57,20 +59,22 @@ class JointEntries:
             raise InvalidInputError(
                 f"{name}: expected at least {len(self.names)} entries, one per joint name, got shape {entries.shape}"
             )
-        finite = np.isfinite(entries[self.at])
-        if not finite.all():
-            at = self.at[int(np.argmin(finite))]
-            raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
+        ours = entries[self._places]
+        if not math.isfinite(ours @ ours):  # cheap; that of finite entries may overflow
+            finite = np.isfinite(ours)
+            if not finite.all():
+                at = self.at[int(np.argmin(finite))]
+                raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
         return entries
 
     def q(self, entries: Array) -> Array:
         """Returns the joint positions of the arm (n,) (rad, m)."""
-        return entries[self.at] * self._unit
+        return entries[self._places] * self._unit
 
     def placed(self, q: Array, entries: Array) -> Array:
         """Returns the entries with the joint positions q (n,) (rad, m) in their places."""
         placed = entries.copy()
-        placed[self.at] = q / self._unit
+        placed[self._places] = q / self._unit
         return placed
 
     def limit(self, name: str, values: ArrayLike) -> Array:
@@ -86,3 +90,9 @@ class JointEntries:
     def most(self, degrees: float) -> Array:
         """Returns a bound (n,) (rad) of the joints that turn; joints that slide have none."""
         return np.where(self._unit == 1.0, np.inf, degrees * self._unit)
+
+
+def _indices(at: list[int]) -> slice | Array:
+    """Indices of an array; those in a row as a slice, which is faster."""
+    row = slice(at[0], at[0] + len(at))
+    return row if at == list(range(row.start, row.stop)) else np.array(at)

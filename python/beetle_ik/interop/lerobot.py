@@ -61,7 +61,7 @@ class RobotKinematics:
         self.result: Solution | Step | None = None
         """What the last `inverse_kinematics` has reached, with `success`, `status`, `message`, `position_error` (m) and
         `rotation_error` (rad); None before the first call."""
-        self._weights: tuple[float, float] | None = None
+        self._given: tuple[object, object] = (None, None)  # weights, as they were given last
 
     def forward_kinematics(self, joint_pos_deg: ArrayLike) -> Array:
         """Returns the pose (4, 4) of the frame in the frame of the robot's root (m).
@@ -103,10 +103,11 @@ class RobotKinematics:
         """
         entries = self._entries.read("current_joint_pos", current_joint_pos)
         target = pose(matrix=desired_ee_pose)
-        weights = _checked(position_weight, orientation_weight)
         start = self.robot.clip(self._entries.q(entries))
-        near = self._nearby(start, target, weights)
-        self.result = near if _suffices(near, start) else self._better(near, target, weights)
+        if position_weight is not self._given[0] or orientation_weight is not self._given[1]:
+            self._weigh(position_weight, orientation_weight, start)
+        near = self._nearby(start, target)
+        self.result = near if _suffices(near, start) else self._better(near, target)
         return self._entries.placed(self.result.q, entries)
 
     def tracker(
@@ -156,12 +157,16 @@ class RobotKinematics:
         )
         return PoseTracker(tracker, self._entries, entries)
 
-    def _nearby(self, q: Array, target: Array, weights: tuple[float, float]) -> Step:
-        """Descends from q, by ticks without velocity limits."""
-        if weights != self._weights:
-            unlimited = Limits(velocity=np.inf)
-            self._local = Tracker(self.robot, q, dt=1.0, task=_task(*weights), limits=unlimited, recover=False)
-            self._weights = weights
+    def _weigh(self, position: float, orientation: float, q: Array) -> None:
+        """Makes the tracker that descends, by ticks without velocity limits."""
+        self._weights = _checked(position, orientation)
+        self._task = _task(*self._weights)
+        unlimited = Limits(velocity=np.inf)
+        self._local = Tracker(self.robot, q, dt=1.0, task=self._task, limits=unlimited, recover=False)
+        self._given = (position, orientation)
+
+    def _nearby(self, q: Array, target: Array) -> Step:
+        """Descends from q."""
         self._local.reset(q)
         for _ in range(_STEPS):
             step = self._local.step(target)
@@ -169,13 +174,13 @@ class RobotKinematics:
                 break
         return step
 
-    def _better(self, near: Step, target: Array, weights: tuple[float, float]) -> Solution | Step:
+    def _better(self, near: Step, target: Array) -> Solution | Step:
         """Returns the solution of a search where that is much nearer to the target, or at the same place."""
-        found = solve(self.robot, target, task=_task(*weights), start=near.q)
+        found = solve(self.robot, target, task=self._task, start=near.q)
         if found.success or np.abs(found.q - near.q).max() < _SAME_PLACE:
             return found
         gains = np.array([near.position_error - found.position_error, near.rotation_error - found.rotation_error])
-        leading, other = np.nan_to_num(gains / _MUCH_NEARER)[:: 1 if weights[0] >= weights[1] else -1]
+        leading, other = np.nan_to_num(gains / _MUCH_NEARER)[:: 1 if self._weights[0] >= self._weights[1] else -1]
         return found if leading > 1.0 or (leading > -1.0 and other > 1.0) else near
 
 
@@ -233,8 +238,10 @@ class PoseTracker:
 
 def _suffices(step: Step, start: Array) -> bool:
     """Whether a step met the pose, or its leading part by a motion as short as those of a stream."""
+    if step.success:
+        return True
     given_up = step.status in (Status.ROTATION_GIVEN_UP, Status.POSITION_GIVEN_UP)
-    return step.success or (given_up and _largest(step.q - start) < _STEP_OF_A_STREAM)
+    return given_up and _largest(step.q - start) < _STEP_OF_A_STREAM
 
 
 def _largest(values: Array) -> float:

@@ -38,7 +38,7 @@ def fk(robot: Robot, *, link: str | None = None) -> Callable[[Tensor], Tensor]:
     """
     checks.of_robot(robot)
     robot.fk(np.zeros(robot.dof), link=link)  # an unknown link is an error here
-    tips, jacobian_of = _tips(robot, link), jacobian(robot, link=link)
+    tips, jacobian_of = checks.axis_of_tips(robot, link), jacobian(robot, link=link)
 
     def pull(gradient: Tensor, pose: Tensor, q: Tensor) -> tuple[Tensor]:
         pulled = _torch().einsum("...ij,...i->...j", jacobian_of(q), _wrench(gradient, pose))
@@ -71,7 +71,7 @@ def jacobian(robot: Robot, *, link: str | None = None) -> Callable[[Tensor], Ten
         require_single_joints(robot, link)
         return (_torch().einsum("...ij,...ijk->...k", gradient, _apply(bend, q)),)
 
-    rule = _Rule(partial(robot.jacobian, link=link), (1,), (*_tips(robot, link), 6, robot.dof), pull)
+    rule = _Rule(partial(robot.jacobian, link=link), (1,), (*checks.axis_of_tips(robot, link), 6, robot.dof), pull)
     return lambda q: _apply(rule, _joints("q", q, robot))
 
 
@@ -230,11 +230,6 @@ def _function() -> Any:
 
 def _torch() -> Any:
     return library("torch", "torch", "interop.torch", extra="torch")
-
-
-def _tips(robot: Robot, link: str | None) -> tuple[int, ...]:
-    """Returns the axis of the tips, if there are several."""
-    return () if link is not None or len(robot.tips) == 1 else (len(robot.tips),)
 
 
 def _joints(name: str, q: Tensor, robot: Robot) -> Tensor:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import obstacles
 from .._core import InvalidInputError, Obstacle
-from ..calls.units import warn
+from ..calls.warned import warn
 from ..installed.needs import library
 from .checks import Array, rows
 from .winding import outward

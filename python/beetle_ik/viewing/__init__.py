@@ -14,6 +14,7 @@
     page        data shared by the parts
     looks       appearance of the links: visual meshes, or solids along the joints
     camera      the first view
+    loads       torques of the motors as shares of their limits
     surfaces    the links in the scene, and their ghosts
     handle, joints, obstacles, postures, playback, planning, reach, report
                 the parts of the page: each shows and changes one thing of the state

@@ -39,6 +39,7 @@ class Arm:
     Attributes:
         q: the configuration (n,). Set it by `put`.
         outcome: the last `Step` or `Solution` on the way to the target; None after `put`.
+        rates: velocities and accelerations (n,) of the motion that is shown; empty at rest.
         moves: whether the arm is moving to the target.
         stays: whether the arm stays in place because the last solution would collide.
     """
@@ -48,6 +49,7 @@ class Arm:
         self.robot = robot
         self.q = q
         self.outcome: Step | Solution | None = None
+        self.rates: tuple[Array, ...] = ()
         self.moves = self.stays = False
         self._targets = self.tips_at(q)
         self._obstacles = obstacles
@@ -142,9 +144,12 @@ class Arm:
         """The nearest two bodies, whether the arm keeps clear of them or not."""
         return nearest(self.robot, self.q, self._obstacles)
 
-    def put(self, q: Array) -> None:
-        """Puts the arm at `q` (n,), to rest there. Targets move along with the tips, if the arm follows them."""
-        self.q, self.outcome = q, None
+    def put(self, q: Array, *rates: Array) -> None:
+        """Puts the arm at `q` (n,), to rest there, or as part of a motion with these velocities and accelerations (n,).
+
+        Targets move along with the tips, if the arm follows them.
+        """
+        self.q, self.rates, self.outcome = q, rates, None
         if self._follow != "off":
             self._targets = self.tips_at(q)
         self._tracker, self.moves = None, False
@@ -156,8 +161,11 @@ class Arm:
         if self._follow == "solve":
             self.solve()
             return False
+        # A new tracker begins at rest, whatever motion was shown before.
+        before = self.rates[0] if self.rates and self._tracker is not None else np.zeros(self.robot.dof)
         self.outcome = self._track()
-        self.q = self.outcome.q
+        self.q, velocity = self.outcome.q, self.outcome.qd
+        self.rates = (velocity, (velocity - before) / DT)
         moved, error = np.abs(self.q - self._anchor).max(), _error(self.outcome)
         if moved > _HUNTING or (moved > _STILL and error < self._error - _NEARER):
             self._anchor, self._error, self._ticks = self.q, error, 0
@@ -168,13 +176,13 @@ class Arm:
                 # at rest.
                 self._tracker, self._tries_again, self._ticks = None, False, 0
             else:
-                self.moves = False
+                self.moves, self.rates = False, ()
         return self.moves
 
     def solve(self) -> None:
         """Puts the arm at a solution, or as near to the target as it gets, unless it would collide there."""
         found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
-        self.outcome = found
+        self.outcome, self.rates = found, ()
         self._tracker, self.moves = None, False
         # Tests the solution: a target out of reach is approached regardless of obstacles.
         self.stays = self._keeps_clear and clearance(self.robot, found.q, self._obstacles) < _MARGIN
@@ -210,7 +218,7 @@ class Arm:
     def _set_off(self) -> None:
         self.moves = self._follow != "off"
         if not self.moves:
-            self.outcome = None
+            self.outcome, self.rates = None, ()
         self._anchor, self._error, self._ticks, self._tries_again = self.q, np.inf, 0, True
 
 

@@ -121,7 +121,7 @@ class Playback:
     def _put(self) -> None:
         arm = self._page.arm
         if self._motion is not None:
-            arm.put(self._motion.at(self._time)[0])
+            arm.put(*self._motion.at(self._time))
             self._left = (arm.q, arm.targets)
 
     def _trace(self, q: NDArray[np.float64]) -> viser.LineSegmentsHandle:

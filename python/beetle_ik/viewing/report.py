@@ -1,4 +1,4 @@
-"""The text above the controls, and the line between the nearest two bodies."""
+"""The text and bars above the controls, and the line between the nearest two bodies."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from .._core import Solution, Status
 from ..figures.style import BLUE, VERMILION, rgb
+from .loads import loads_in_html
 
 if TYPE_CHECKING:
     from .._core import Nearest
@@ -37,7 +38,7 @@ _WORDS = {
 
 
 class Report:
-    """Status, errors, clearance and the nearest two bodies; errors of the page; gaps of the model."""
+    """Status, errors, clearance, loads of the motors; the nearest two bodies; errors of the page; gaps of the model."""
 
     def __init__(self, page: Page, notes: list[str]) -> None:
         """Adds the text, with `notes` below it."""
@@ -59,6 +60,9 @@ class Report:
             _clearance(nearest),
             self._limits(),
         ]
+        loads = loads_in_html(self._page.arm)
+        if loads is not None:
+            paragraphs.append(loads)
         if self.problem:
             paragraphs.insert(0, f"<b style='color:{VERMILION}'>{html.escape(self.problem)}</b>")
         text = "".join(f"<p>{each}</p>" for each in paragraphs)

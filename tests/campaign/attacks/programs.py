@@ -15,6 +15,8 @@ SAMPLES = 2000
 OFF_PATH = 1e-5
 SPEED, SLOWER = 1e-3, 1.5e-3
 ACCELERATION, JERK = 4.0, 80.0
+MET, LARGEST_STEP, ROOM = 1e-9, 0.1, 0.02
+"""Of the judge's own steps along a line: error (m, rad), largest change of a joint, and its distance from limits."""
 
 
 def distances(points: Array, start: Array, move: dict[str, Any]) -> Array:
@@ -33,6 +35,35 @@ def distances(points: Array, start: Array, move: dict[str, Any]) -> Array:
     above = (points - centre) @ normal
     outward = np.linalg.norm(points - centre - above[:, None] * normal, axis=1) - np.linalg.norm(start - centre)
     return np.hypot(above, outward)
+
+
+def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Array | None:
+    """Joint positions at the end of a line from q, by small Newton steps; None where one is large or near a limit."""
+    lower, upper = arms.bounds(joints)
+    start = arms.kinematics(joints, q[None])[0][0]
+    steps = int(np.ceil(max(np.linalg.norm(move["way"]) / 0.004, move["turn"] / 0.02, 1.0)))
+    for part in np.arange(1, steps + 1) / steps:
+        turned = arms.turn(start[:3, 0], np.array([part * move["turn"]]))[0] @ start[:3, :3]
+        before = q
+        for _ in range(20):
+            poses, jacobians = arms.kinematics(joints, q[None])
+            relative = turned @ poses[0, :3, :3].T
+            skew = 0.5 * (relative - relative.T)
+            missing = np.r_[
+                start[:3, 3] + part * np.array(move["way"]) - poses[0, :3, 3], skew[2, 1], skew[0, 2], skew[1, 0]
+            ]
+            if np.linalg.norm(missing) < MET:
+                break
+            q = q + np.linalg.pinv(jacobians[0], rcond=1e-6) @ missing
+        moved = np.abs(q - before).max()
+        if (
+            np.linalg.norm(missing) > MET
+            or moved > LARGEST_STEP
+            or (q < lower + ROOM).any()
+            or (q > upper - ROOM).any()
+        ):
+            return None
+    return q
 
 
 class Programs(Attack):
@@ -147,6 +178,25 @@ class Programs(Attack):
             return  # its limits leave no room for the joint that it follows
         if "'m" not in str(error) and "takes no time" not in str(error):
             raise BrokenError("a program is refused, and no move is named", error)
+        if "was not found" in str(error) or "cannot be reached" in str(error):
+            self._judge_unfollowed(case, error)
+
+    def _judge_unfollowed(self, case: Case, error: Exception) -> None:
+        """A program of lines without blends that the judge follows may not be refused."""
+        joints = case["joints"]
+        q = start = arms.configurations(joints)[0]
+        lower, upper = arms.bounds(joints)
+        for move in case["moves"]:
+            if move["kind"] == "arc" or move["blend"] > 0.0:
+                return
+            if move["kind"] == "joints":
+                q = np.clip(start + move["q"], lower, upper)
+            elif move["kind"] == "line":
+                reached = followed(joints, q, move)
+                if reached is None:
+                    return
+                q = reached
+        raise BrokenError("a program that can be followed is refused", error)
 
 
 ATTACKS = [Programs()]

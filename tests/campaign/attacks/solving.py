@@ -128,9 +128,12 @@ class PlaceFirst(Attack):
     page = "solving"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
-        """A hard turn is of round numbers, and its configuration at limits and at zero."""
+        """A hard turn is of round numbers, and its configuration at limits, a hair inside them, and at zero."""
         joints = arms.easy_arm(random, int(random.integers(3, 6)))
         arms.put(joints, random, hard)
+        for joint in joints:
+            if hard and random.random() < 0.3:
+                joint["at"] = (joint["at"][0] + 10.0 ** random.uniform(-6.0, -1.0) * random.choice([-1.0, 1.0]),)
         vector = (
             random.choice(np.array([0.0, 0.5, -0.5, 1.0, 1e-9, 1e-5]) * np.pi, 3)
             if hard
@@ -153,7 +156,8 @@ class PlaceFirst(Attack):
             raise BrokenError("the place is met, and the status does not say so", solution.message)
         lower, upper = (np.clip(bound, -TURN, TURN) for bound in arms.bounds(case["joints"]))
         starts = np.random.default_rng(case["starts"]).uniform(lower, upper, (200, len(lower)))
-        q = inside(case["joints"], arms.descended(case["joints"], target, starts, rotation=False))
+        found = inside(case["joints"], arms.descended(case["joints"], target, starts, rotation=False))
+        q = np.vstack((arms.configurations(case["joints"])[:1], found))  # the first had the pose before its turn
         away, angle = arms.pose_error(arms.kinematics(case["joints"], q)[0], target)
         nearer = (away < 0.1 * TOLERANCE) & (angle < solution.rotation_error - 1e-3)
         if nearer.any():

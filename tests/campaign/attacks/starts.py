@@ -28,6 +28,7 @@ solution = bik.solve(robot, target, start=start)
 tracker, refusal = tried(lambda: bik.Tracker(robot, start, dt={dt}, limits=limits))
 tracked = [] if tracker is None else [tracker.q] + [tracker.step(target).q for _ in range({ticks})]
 plan, no_plan = tried(lambda: bik.plan_point_to_point(robot, start_q=start, end_q=end, limits=limits))
+bare, no_bare = tried(lambda: bik.state_to_state(start, end, limits, robot=robot))
 wrapped, no_turn = tried(lambda: robot.wrap(turned))
 order = np.random.default_rng(0).permutation(len(start))
 named = robot.q_from([robot.joint_names[i] for i in order], np.take(start, order))
@@ -109,6 +110,12 @@ class StartsAsRead(Attack):
             self.judge_motion(
                 motion.at(np.linspace(0, motion.duration, 200))[0], (lower, upper, rounding), start, "plan"
             )
+        if left["bare"] is not None:
+            said = {joint for joint, _, _ in left["bare"].start_outside}
+            names = left["robot"].joint_names
+            wrong = [j for j, name in enumerate(names) if (name in said) != (beyond[j] > rounding[j])]
+            if any(abs(beyond[j] - rounding[j]) > SEEN for j in wrong):
+                raise BrokenError("a bare motion does not say what it leads inside", sorted(said))
         self.judge_turns(left, (lower, upper))
         if not np.array_equal(left["named"], start):
             raise BrokenError("values with names come in another order", left["named"].tolist())

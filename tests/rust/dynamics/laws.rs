@@ -15,7 +15,7 @@ use crate::common::{message, robot};
 
 /// Robots with an inertia of each link: random chains with mimic joints, alone, on a base that drives and on one that floats, and two
 /// arms.
-fn robots() -> Vec<Robot> {
+pub(super) fn robots() -> Vec<Robot> {
     let limits = |bound: &[f64]| BaseLimits {
         lower: bound.iter().map(|bound| -bound).collect(),
         upper: bound.to_vec(),
@@ -54,7 +54,7 @@ fn inertia(rng: &mut LazyRng) -> Inertia {
 }
 
 /// States of a robot: zeros, right angles and reals, mixed.
-fn states(robot: &Robot, seed: u64) -> Vec<[Vec<f64>; 3]> {
+pub(super) fn states(robot: &Robot, seed: u64) -> Vec<[Vec<f64>; 3]> {
     let mut rng = rng::stream(seed, 8);
     let mut states = vec![];
     for round in [0.0, 0.5, 1.0] {

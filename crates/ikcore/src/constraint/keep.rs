@@ -66,8 +66,13 @@ impl Keep {
     /// A task and its target, for a tip, or for one tip seen from another.
     ///
     /// # Errors
-    /// Those of the task and its target; [`Error::Contradiction`] for a task without a finite tolerance, or with a level.
+    /// Those of the task and its target; [`Error::Contradiction`] for a task without a finite tolerance, with a level, or of the centre
+    /// of mass.
     pub fn new(named: &NamedTask, target: &Target) -> Result<Self> {
+        if named.subject == Subject::CenterOfMass {
+            let problem = "a tip or a pair of tips is kept along the way, not the centre of mass".into();
+            return Err(Error::Contradiction { problem });
+        }
         let given = Given { task: *named, target: *target };
         let (task, mut target) = (named.validated()?, *target);
         if task.level != 0 {
@@ -113,6 +118,7 @@ impl Keep {
         let last = match self.task.subject {
             Subject::Tip(of) => of,
             Subject::Pair { from, of } => from.max(of),
+            Subject::CenterOfMass => 0,
         };
         if last < robot.tip_count() {
             return Ok(());
@@ -243,7 +249,7 @@ impl Keep {
         let tip = |tip: usize| robot.tip_among(tip, frames);
         let frame = self.task.frame_of(tip);
         let origin = match self.task.subject {
-            Subject::Tip(_) => frame.origin,
+            Subject::Tip(_) | Subject::CenterOfMass => frame.origin,
             Subject::Pair { from, .. } => tip(from).transform::<NoFma>(&frame.origin),
         };
         (frame, origin)

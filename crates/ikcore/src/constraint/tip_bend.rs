@@ -42,6 +42,8 @@ fn carriers<'a>(robot: &'a Robot, subject: &Subject) -> Carriers<'a> {
             all.extend(own.into_iter().rev());
             all
         }
+        // `Keep` takes none.
+        Subject::CenterOfMass => Carriers::new(),
     }
 }
 

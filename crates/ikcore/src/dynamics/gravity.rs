@@ -1,4 +1,4 @@
-//! Torques that hold the bodies up, and their centre of mass.
+//! Torques that hold the bodies up.
 
 use super::rigid_bodies::Dynamics;
 use super::scratch::{BodyState, DynamicsScratch};
@@ -14,13 +14,6 @@ impl Dynamics {
         let DynamicsScratch { frames, states, .. } = scratch;
         holding(self, frames, states, torques);
     }
-
-    /// Returns the centre of all masses in base axes (m), those of frame 0 included.
-    pub fn center_of_mass(&self, scratch: &mut DynamicsScratch) -> [f64; 3] {
-        let DynamicsScratch { frames, states, .. } = scratch;
-        first_moments(self, frames, states);
-        states[0].moment.vector().map(|moment| moment / self.carried[0])
-    }
 }
 
 by_instructions! {
@@ -34,12 +27,6 @@ by_instructions! {
             let sliding = dynamics.carried[i + 1] * dot(axis, gravity);
             torques[body.motion.joint] -= body.motion.turn_scale * turning + body.motion.slide_scale * sliding;
         }
-    }
-}
-
-by_instructions! {
-    fn first_moments(dynamics: &Dynamics, frames: &[Frame], states: &mut [BodyState]) {
-        gather::<A>(dynamics, frames, states);
     }
 }
 

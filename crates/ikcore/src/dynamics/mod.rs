@@ -10,13 +10,17 @@
 //! | `rigid_bodies` | moving bodies of a robot, gravity, friction and rotors |
 //! | `scratch`, `wide_vectors` | scratch memory and registers of the kernels |
 //! | `inverse` | recursive Newton-Euler algorithm: the torques of a motion |
-//! | `gravity` | torques that hold the bodies up, centre of mass |
+//! | `center_of_mass` | centre of all masses, and its Jacobian |
+//! | `gravity` | torques that hold the bodies up |
+//! | `holding_slope` | derivatives of those torques |
 //! | `mass_matrix` | composite rigid body algorithm |
 //! | `forward` | accelerations that torques cause |
 //! | `rotation_vector_rate` | angular acceleration of a floating base |
 
+mod center_of_mass;
 mod forward;
 mod gravity;
+mod holding_slope;
 mod inertia;
 mod inverse;
 mod mass_matrix;

@@ -4,6 +4,7 @@ use super::inertia::Inertia;
 use super::mass_moments::MassMoments;
 use crate::kinematics::RotationVector;
 use crate::kinematics::chain::Transmission;
+use crate::math::so3::norm;
 
 /// Friction and rotor of a joint, with those of its followers reflected.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -83,6 +84,12 @@ impl Dynamics {
     /// Mass of all that frame `frame` carries (kg).
     pub fn carried_mass(&self, frame: usize) -> f64 {
         self.carried[frame]
+    }
+
+    /// Weight of all that moves (N).
+    pub(crate) fn carried_weight(&self) -> f64 {
+        let mass: f64 = self.bodies.iter().map(|body| body.moments.mass).sum();
+        mass * norm(&self.gravity)
     }
 
     /// Returns the first joint that moves neither a mass nor a rotor: the mass matrix is singular everywhere.

@@ -25,14 +25,18 @@ pub(super) fn asked_tasks(robot: &Robot, options: &SolveOptions) -> Result<Small
 /// Validates these tasks.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for an unknown tip, [`Error::Contradiction`] for a tip or pair that is named twice; errors of wrong
-/// tasks and tolerances.
+/// [`Error::OutOfRange`] for an unknown tip, [`Error::Contradiction`] for a tip or pair that is named twice; errors of
+/// [`Subject::center_of_mass`], of wrong tasks and tolerances.
 pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<CheckedTask>> {
     let tips: Vec<&str> = robot.tips().collect();
     for (i, task) in tasks.iter().enumerate() {
         let numbers = match task.subject {
             Subject::Tip(tip) => [tip; 2],
             Subject::Pair { from, of } => [from, of],
+            Subject::CenterOfMass => {
+                Subject::center_of_mass(robot)?;
+                [0; 2]
+            }
         };
         if let Some(number) = numbers.into_iter().find(|number| *number >= tips.len()) {
             let expected = format!("the number of one of {} tips, from 0 on", tips.len());
@@ -48,6 +52,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<Ch
             let problem = match task.subject {
                 Subject::Tip(_) => format!("tip '{of}' has two targets"),
                 Subject::Pair { .. } => format!("the pair of tips '{from}' and '{of}' has two targets: leave one out"),
+                Subject::CenterOfMass => "the centre of mass has two targets".into(),
             };
             return Err(Error::Contradiction { problem: problem.into() });
         }
@@ -58,7 +63,7 @@ pub(crate) fn checked_tasks(robot: &Robot, tasks: &[NamedTask]) -> Result<Vec<Ch
 /// Reverses a pair, as seen from its other tip.
 fn turned(subject: Subject) -> Subject {
     match subject {
-        Subject::Tip(_) => subject,
+        Subject::Tip(_) | Subject::CenterOfMass => subject,
         Subject::Pair { from, of } => Subject::Pair { from: of, of: from },
     }
 }

@@ -91,6 +91,11 @@ pub struct JointOutside {
 }
 
 impl JointOutside {
+    /// Joint of this kind, if it is known, at `value` beyond `limit` (rad, m).
+    pub(crate) fn new(joint: String, kind: Option<JointKind>, value: f64, limit: f64) -> Self {
+        Self { joint, value, limit, unit: position_unit(kind).to_owned() }
+    }
+
     /// Joints in words, for the end of a sentence; empty without any.
     pub(crate) fn in_words(outside: &[Self], verb: &str) -> String {
         let joint = |Self { joint, value, limit, unit }: &Self| {
@@ -146,8 +151,7 @@ impl Limits {
             if beyond <= rounding {
                 *value = limit;
             } else if beyond <= slack.of(j, kind) + rounding {
-                let (joint, value, unit) = (joint.to_owned(), *value, position_unit(kind).to_owned());
-                admitted.outside.push(JointOutside { joint, value, limit, unit });
+                admitted.outside.push(JointOutside::new(joint.to_owned(), kind, *value, limit));
             } else {
                 let remedy = remedy(robot, j, *value, [lower, upper], *slack != StartSlack::NONE);
                 return Err(outside_limits(what, (joint, kind), *value, [lower, upper], remedy));

@@ -86,9 +86,36 @@ fn stationary_points(coefficients: &[f64], lower: f64, upper: f64) -> Short {
     if coefficients.len() < 2 {
         return Short::new();
     }
-    let mut points = roots(&derivative(coefficients), lower, upper);
+    let slope = derivative(coefficients);
+    if lower == 0.0 && has_one_sign(&slope, upper) {
+        return Short::new();
+    }
+    let mut points = roots(&slope, lower, upper);
     points.retain(|x| lower < *x && *x < upper);
     points
+}
+
+/// Returns whether the Bernstein coefficients on `[0, upper]` have one sign, beyond rounding: then so does the polynomial. Most pieces of
+/// a motion rise or fall throughout, which needs no search for roots.
+fn has_one_sign(coefficients: &[f64], upper: f64) -> bool {
+    const ROUNDING: f64 = 64.0 * f64::EPSILON;
+    let degree = coefficients.len().saturating_sub(1);
+    let mut control = Short::from_slice(coefficients);
+    let (mut power, mut choices, mut terms) = (1.0, 1.0, 0.0);
+    for (k, c) in control.iter_mut().enumerate() {
+        *c *= power;
+        terms += c.abs();
+        *c /= choices;
+        power *= upper;
+        choices *= (degree - k) as f64 / (k + 1) as f64;
+    }
+    for first in 1..=degree {
+        for i in (first..=degree).rev() {
+            control[i] += control[i - 1];
+        }
+    }
+    let least = ROUNDING * terms;
+    control.iter().all(|c| *c > least) || control.iter().all(|c| *c < -least)
 }
 
 /// Returns the value at `x`, or zero if the value is within the rounding error of its terms.

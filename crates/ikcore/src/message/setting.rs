@@ -12,6 +12,8 @@ pub enum Setting {
     Budget,
     /// Planner: "minmax", "timed" or "tpbso".
     Method(&'static str),
+    /// Distance that a motion may leave its path by, of this value.
+    Tolerance(String),
     /// Planner that has a solver of its own.
     MethodWithSolver,
     /// Part of a pose that comes first: "position" or "orientation".
@@ -95,6 +97,7 @@ impl fmt::Display for Setting {
                 return write!(f, "{article} {kind} limit");
             }
             Self::Method(name) => return write!(f, "the method '{name}'"),
+            Self::Tolerance(value) => return write!(f, "a tolerance of {value}"),
             Self::First(part) => return write!(f, "a task with the {part} first"),
             Self::Prefer(which) => return write!(f, "the preference '{which}'"),
             Self::Budget => "budget",

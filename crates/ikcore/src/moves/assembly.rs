@@ -93,7 +93,12 @@ impl<'a> Assembly<'a> {
             && let Some(run) = Run::rounded(self.around.robot, self.limits, &parts, &radii)?
         {
             let motion = timed(&run.path, self.limits)?;
-            if self.around.is_free() || self.around.fault_on(&motion)?.is_none() {
+            let is_better = if self.around.is_free() {
+                !self.stops_are_faster(&parts, motion.duration())?
+            } else {
+                self.around.fault_on(&motion)?.is_none()
+            };
+            if is_better {
                 return self.add(&run, motion);
             }
         }
@@ -112,6 +117,18 @@ impl<'a> Assembly<'a> {
             self.add(&run, motion)?;
         }
         Ok(())
+    }
+
+    /// Whether the parts, with a stop after each, are faster than a duration (s): a tight corner may take longer than a stop.
+    fn stops_are_faster(&self, parts: &[RunPart<'a>], than: f64) -> Result<bool> {
+        let mut duration = 0.0;
+        for part in parts {
+            duration += timed(&part.path, self.limits)?.duration();
+            if duration >= than {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Adds a run and the reports of its moves.

@@ -22,8 +22,10 @@ const DAMPING: f64 = 0.05;
 /// Longest step along the path (m), and as a part of a turn by a radian.
 const LONGEST_STEP: f64 = 0.05;
 const PART_OF_TURN: f64 = 0.25;
-/// Largest change of a joint in a step (rad, m), and the halvings after which the path counts as lost.
+/// Largest change of a joint in a step (rad, m), and its largest difference from what is expected: beyond, another branch may be met.
 const LARGEST_CHANGE: f64 = 0.4;
+const LARGEST_SURPRISE: f64 = 0.1;
+/// Halvings after which the path counts as lost.
 const HALVINGS: i32 = 10;
 
 /// Largest distance (m) and angle (rad) of the tip from its path between knots.
@@ -70,6 +72,15 @@ impl Track {
     }
 }
 
+/// Where the self-motion of a redundant arm leads.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lead<'a> {
+    /// The configuration that the arm goes to, as near as its path allows.
+    pub toward: &'a [f64],
+    /// Length of the path (m) after which two thirds of the way are gone.
+    pub within: f64,
+}
+
 /// Follows paths of the tip within a box.
 pub(super) struct Follower<'a> {
     robot: &'a Robot,
@@ -84,8 +95,9 @@ impl<'a> Follower<'a> {
         Self { robot, bounds, linearization: Linearization::default(), evaluations: 0 }
     }
 
-    /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be.
-    pub fn follow(&mut self, path: &ToolPath, q: &[f64]) -> Result<Track, Lost> {
+    /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
+    /// move as little as they can.
+    pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let mut track = Track { knots: vec![0.0], rows: q.to_vec() };
         let mut before = Point::from_slice(q);
         if !self.project(path, 0.0, &mut before) {
@@ -96,7 +108,7 @@ impl<'a> Follower<'a> {
             let end = begin + piece.length;
             let longest = LONGEST_STEP.min(PART_OF_TURN * piece.length_per_turn());
             let even = piece.length / (piece.length / longest).ceil().max(2.0);
-            self.follow_piece(path, [*begin, end], even, &mut track)?;
+            self.follow_piece(path, [*begin, end, even], lead, &mut track)?;
         }
         Ok(track)
     }
@@ -104,8 +116,8 @@ impl<'a> Follower<'a> {
     fn follow_piece(
         &mut self,
         path: &ToolPath,
-        [begin, end]: [f64; 2],
-        even: f64,
+        [begin, end, even]: [f64; 3],
+        lead: Option<&Lead<'_>>,
         track: &mut Track,
     ) -> Result<(), Lost> {
         let (mut at, mut step) = (begin, even);
@@ -115,12 +127,20 @@ impl<'a> Follower<'a> {
             let next = if at + 1.2 * step >= end { end } else { at + step };
             let last = track.knots.len() - 1;
             let mut q = Point::from_slice(track.row(last));
-            if last > 0 {
+            if let Some(lead) = lead {
+                let part = 1.0 - (-(next - at) / lead.within).exp();
+                q.iter_mut().zip(lead.toward).for_each(|(q, toward)| *q += part * (toward - *q));
+                self.bounds.clip(&mut q);
+            } else if last > 0 {
                 let stretch = (next - at) / (track.knots[last] - track.knots[last - 1]);
                 q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
                 self.bounds.clip(&mut q);
             }
-            if self.project(path, next, &mut q) && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE {
+            let expected = q.clone();
+            if self.project(path, next, &mut q)
+                && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE
+                && largest_difference(&q, &expected) <= LARGEST_SURPRISE
+            {
                 track.push(next, &q);
                 at = next;
                 step = (2.0 * step).min(even);

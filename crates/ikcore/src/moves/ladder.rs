@@ -5,7 +5,7 @@
 //! one of the paths of its block is no candidate. Of the sequences of candidates, the quickest is taken.
 
 use super::around::MoveSurroundings;
-use super::follower::{Follower, Lost, Track};
+use super::follower::{Follower, Lead, Lost, Track};
 use super::outline::{Stage, StageKind};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
@@ -28,6 +28,14 @@ const REDUNDANCY: usize = 16;
 /// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
 const MOST_FOLLOWED: usize = 48;
 const ENOUGH: usize = 6;
+
+/// Configurations that the self-motion is led to, and those at a pose that are led so, where no path is followed without.
+const MOST_LED_TO: usize = 12;
+const MOST_LED: usize = 4;
+
+/// Lengths within which a lead takes effect, as parts of the length up to where a path was lost, and the least of that (m).
+const LEAD_WITHIN: [f64; 3] = [0.3, 0.1, 1.0];
+const LEAST_LENGTH: f64 = 0.01;
 
 /// Distance (rad, m) from limits within which the path of a redundant arm stays where it can: splines swing a little between knots.
 const INSET: f64 = 1e-3;
@@ -149,7 +157,7 @@ impl<'a> Ladder<'a> {
             let found = match (&block.goal, ladder.last()) {
                 (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
                 _ => self
-                    .tracks(start, &block.paths)
+                    .tracks_by_any_lead(start, &block.paths, monitor)?
                     .map(|tracks| vec![Rung { q: start.into(), tracks, cost: 0.0, before: 0 }]),
             };
             match found {
@@ -179,7 +187,7 @@ impl<'a> Ladder<'a> {
     ) -> Result<Result<Vec<Rung>, Dead>> {
         let (mut rungs, mut failed) = (vec![], None);
         match goal {
-            JointGoal::Configuration(q) => match self.tracks(q, paths) {
+            JointGoal::Configuration(q) => match self.tracks_by_any_lead(q, paths, monitor)? {
                 Ok(tracks) => rungs.push(self.after(before, q.as_slice().into(), tracks)),
                 Err(dead) => failed = Some(dead),
             },
@@ -194,6 +202,16 @@ impl<'a> Ladder<'a> {
                     }
                     match self.placed(candidate, paths, before) {
                         Ok(more) => rungs.extend(more),
+                        Err(dead) => failed = Some(farther(failed, dead)),
+                    }
+                }
+                for candidate in candidates.iter().take(MOST_LED) {
+                    if !self.is_redundant || !rungs.is_empty() {
+                        break;
+                    }
+                    let q = self.near(candidate, before);
+                    match self.tracks_by_any_lead(&q, paths, monitor)? {
+                        Ok(tracks) => rungs.push(self.after(before, q, tracks)),
                         Err(dead) => failed = Some(farther(failed, dead)),
                     }
                 }
@@ -228,13 +246,11 @@ impl<'a> Ladder<'a> {
     /// The rungs of one configuration at the start of a block, at the whole turns that suit each of the rungs before.
     fn placed(&mut self, candidate: &[f64], paths: &[&ToolPath], before: &[Rung]) -> Result<Vec<Rung>, Dead> {
         if self.is_redundant {
-            let mut q = Point::from_slice(candidate);
-            let bounds = Bounds::from_ranges(self.ranges());
-            bring_near(self.robot, &bounds, before[0].end(), &mut q);
-            let tracks = self.tracks(&q, paths)?;
+            let q = self.near(candidate, before);
+            let tracks = self.tracks(&q, paths, None)?;
             return Ok(vec![self.after(before, q, tracks)]);
         }
-        let tracks = self.follow_all(candidate, paths)?;
+        let tracks = self.follow_all(candidate, paths, None)?;
         let mut rungs: Vec<Rung> = vec![];
         for rung in before {
             let turns = self
@@ -255,9 +271,55 @@ impl<'a> Ladder<'a> {
         Ok(rungs)
     }
 
+    /// A configuration at the whole turns nearest to the end of the quickest rung `before`.
+    fn near(&self, candidate: &[f64], before: &[Rung]) -> Point {
+        let mut q = Point::from_slice(candidate);
+        bring_near(self.robot, &Bounds::from_ranges(self.ranges()), before[0].end(), &mut q);
+        q
+    }
+
+    /// Follows all paths from `q` with the least motion of the joints. Where that leads a redundant arm into a limit, a singularity or an
+    /// obstacle, its self-motion leads elsewhere from the start on: to configurations at the end of the path that was lost, and to the
+    /// middle of the limits.
+    ///
+    /// # Errors
+    /// Those of `solve_all`.
+    fn tracks_by_any_lead(
+        &mut self,
+        q: &[f64],
+        paths: &[&ToolPath],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Track>, Dead>> {
+        let dead = match self.tracks(q, paths, None) {
+            Err(dead @ Dead::Path { .. }) if self.is_redundant => dead,
+            other => return Ok(other),
+        };
+        let Dead::Path { path, at, .. } = &dead else { return Ok(Err(dead)) };
+        let length = paths[..*path].iter().map(|path| path.length()).sum::<f64>() + at;
+        let end = Pose::from(paths[*path].pose(paths[*path].length()));
+        let mut leads = self.configurations(&end, q, monitor)?.unwrap_or_default();
+        leads.truncate(MOST_LED_TO);
+        let middle = |((lower, upper), q): ((f64, f64), &f64)| {
+            let middle = 0.5 * (lower + upper);
+            if middle.is_finite() { middle } else { *q }
+        };
+        leads.push(self.ranges().zip(q).map(middle).collect());
+        let mut failed = dead;
+        for part in LEAD_WITHIN {
+            for toward in &leads {
+                let lead = Lead { toward, within: part * length.max(LEAST_LENGTH) };
+                match self.tracks(q, paths, Some(&lead)) {
+                    Ok(tracks) => return Ok(Ok(tracks)),
+                    Err(dead) => failed = farther(Some(failed), dead),
+                }
+            }
+        }
+        Ok(Err(failed))
+    }
+
     /// Follows all paths from `q`, and checks limits.
-    fn tracks(&mut self, q: &[f64], paths: &[&ToolPath]) -> Result<Vec<Track>, Dead> {
-        let tracks = self.follow_all(q, paths)?;
+    fn tracks(&mut self, q: &[f64], paths: &[&ToolPath], lead: Option<&Lead<'_>>) -> Result<Vec<Track>, Dead> {
+        let tracks = self.follow_all(q, paths, lead)?;
         for joint in 0..self.robot.dof() {
             let [lowest, highest] = range(q, &tracks, joint);
             if let Some(value) = self.excess(joint, [lowest, highest]) {
@@ -267,12 +329,12 @@ impl<'a> Ladder<'a> {
         Ok(tracks)
     }
 
-    fn follow_all(&mut self, q: &[f64], paths: &[&ToolPath]) -> Result<Vec<Track>, Dead> {
+    fn follow_all(&mut self, q: &[f64], paths: &[&ToolPath], lead: Option<&Lead<'_>>) -> Result<Vec<Track>, Dead> {
         let mut tracks: Vec<Track> = Vec::with_capacity(paths.len());
         for (i, path) in paths.iter().enumerate() {
             let from = tracks.last().map_or(q, Track::end).to_vec();
             let lost = |Lost { at }| Dead::Path { path: i, at, cause: Cause::OutOfReach };
-            tracks.push(self.follower.follow(path, &from).map_err(lost)?);
+            tracks.push(self.follower.follow(path, &from, lead).map_err(lost)?);
         }
         match self.blocked(q, &tracks) {
             None => Ok(tracks),

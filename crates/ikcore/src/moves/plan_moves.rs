@@ -122,7 +122,11 @@ impl Climber<'_> {
                     Err(place) => return Err(self.no_way(i, lost(place.at, Cause::OutOfReach), monitor)?),
                     Ok(joints) => match self.excess(&joints) {
                         Some((joint, value)) => {
-                            return Err(self.no_way(i, lost(0.0, Cause::Limit { joint, value }), monitor)?);
+                            return Err(self.no_way(
+                                i,
+                                lost(place_of(&joints, joint, value), Cause::Limit { joint, value }),
+                                monitor,
+                            )?);
                         }
                         None => paths.push(joints),
                     },
@@ -200,9 +204,19 @@ impl Climber<'_> {
     }
 }
 
+/// Where on a path a joint is nearest to a value that it takes.
+fn place_of(path: &JointPath, joint: usize, value: f64) -> f64 {
+    let pieces = (0..path.pieces()).flat_map(|piece| [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (piece, part)));
+    let off = |(piece, part): (usize, f64)| {
+        let from = part * path.length(piece);
+        ((path.joint_at(piece, from, joint)[0] - value).abs(), path.breaks()[piece] + from)
+    };
+    pieces.map(off).min_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.0, |(_, s)| s)
+}
+
 /// The move at the length `at` of a path, and the length along that move.
 fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
-    let index = path.pieces[path.piece_at(at)].index;
-    let begin = path.pieces.iter().position(|piece| piece.index == index).map_or(0.0, |first| path.breaks[first]);
-    (index, at - begin)
+    let i = path.piece_at(at);
+    let piece = &path.pieces[i];
+    (piece.index, piece.from + at - path.breaks[i])
 }

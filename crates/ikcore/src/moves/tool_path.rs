@@ -18,6 +18,8 @@ const NEGLIGIBLE: f64 = 1e-6;
 pub(super) struct ToolPiece {
     /// Index of its move; of the first of two for a corner.
     pub index: usize,
+    /// Length (m) along that move at which it begins.
+    pub from: f64,
     /// Length (m).
     pub length: f64,
     /// Largest speed of the tip (m/s).
@@ -27,8 +29,7 @@ pub(super) struct ToolPiece {
 
 #[derive(Debug, Clone)]
 enum Course {
-    /// A leg from this length of it on.
-    Leg(Leg, f64),
+    Leg(Leg),
     Corner(Corner),
 }
 
@@ -41,7 +42,7 @@ impl ToolPiece {
     /// Length (m) over which the tip turns by a radian.
     pub fn length_per_turn(&self) -> f64 {
         match &self.course {
-            Course::Leg(leg, _) => {
+            Course::Leg(leg) => {
                 let bend = leg.at(0.0)[2].norm();
                 1.0 / bend.max(leg.rate.norm()).max(f64::MIN_POSITIVE)
             }
@@ -51,7 +52,7 @@ impl ToolPiece {
 
     fn pose(&self, s: f64) -> Pose {
         match &self.course {
-            Course::Leg(leg, from) => leg.pose(from + s),
+            Course::Leg(leg) => leg.pose(self.from + s),
             Course::Corner(corner) => {
                 let (position, rotation) = corner.at(s);
                 Pose::from_parts(position.into(), rotation)
@@ -94,7 +95,8 @@ impl ToolPath {
             let corner = Corner::between(leg, left, next, next_cut, radius);
             push_leg(&mut pieces, leg, entered, left);
             let speed = leg.speed.zip(next.speed).map(|(before, after)| before.max(after));
-            pieces.push(ToolPiece { index: leg.index, length: corner.length(), speed, course: Course::Corner(corner) });
+            let (index, length) = (leg.index, corner.length());
+            pieces.push(ToolPiece { index, from: left, length, speed, course: Course::Corner(corner) });
             entered = next_cut;
         }
         let mut breaks = vec![0.0];
@@ -131,7 +133,7 @@ impl ToolPath {
 fn push_leg(pieces: &mut Vec<ToolPiece>, leg: &Leg, from: f64, to: f64) {
     if to - from > NEGLIGIBLE * leg.length {
         let Leg { index, speed, .. } = *leg;
-        pieces.push(ToolPiece { index, length: to - from, speed, course: Course::Leg(leg.clone(), from) });
+        pieces.push(ToolPiece { index, from, length: to - from, speed, course: Course::Leg(leg.clone()) });
     }
 }
 

@@ -35,7 +35,8 @@ pub use crate::plan::{
     PointToPointMethod, PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{
-    ConstantLimits, JointPath, SplineEnds, TimingOptions, Violation, time_optimal, time_optimal_within,
+    ConstantLimits, JointPath, RecordedNoise, SplineEnds, TimingOptions, Violation, recorded_noise, time_optimal,
+    time_optimal_within,
 };
 pub use along_path::plan_along_path;
 pub(crate) use point_to_point::check_point_to_point;

@@ -313,7 +313,7 @@ impl Robot {
     ) -> bool {
         let arm = self.position_arm.get_or_init(|| {
             let chain = self.parts.description.folded(&Pose::identity(), &Pose::identity());
-            if self.tip_count() == 1 { PositionArm::new(&chain, self.dof()) } else { None }
+            if self.tip_count() == 1 { PositionArm::new(&chain, limits) } else { None }
         });
         let Some(arm) = arm else { return false };
         let target = Frame::from(self.base()).inverse().then::<Baseline>(pose);

@@ -7,8 +7,8 @@ use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint_at;
 use crate::kinematics::Wrench;
-use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame};
 
 thread_local! {
     /// Scratch memory of the last call on this thread: to set up its eight kilobytes takes longer than the torques of one configuration.
@@ -134,10 +134,28 @@ impl Robot {
             for (row, q) in rows.enumerate() {
                 checkpoint_at(row)?;
                 self.write_frames(q, &mut scratch.frames);
-                centers.extend(dynamics.center_of_mass(scratch));
+                centers.extend(dynamics.center_of_mass_and_rates(&scratch.frames, &mut []));
             }
             Ok(centers)
         })
+    }
+
+    /// A frame at the centre of mass in the axes of the base, and its Jacobian (n,), whose angular rows are zero. The robot has dynamics:
+    /// the base is the centre of one that has none.
+    pub(crate) fn center_of_mass_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        columns.fit(q.len());
+        columns[..q.len()].fill([0.0; 6]);
+        self.frame_at_center_of_mass(q, &mut columns[..q.len()])
+    }
+
+    /// A frame at the centre of mass in the axes of the base; adds the velocity of the centre to `columns`.
+    pub(crate) fn frame_at_center_of_mass(&self, q: &[f64], columns: &mut [[f64; 6]]) -> Frame {
+        let Ok(dynamics) = self.dynamics() else { return Frame::IDENTITY };
+        let origin = self.with_scratch(dynamics, |scratch| {
+            self.write_frames(q, &mut scratch.frames);
+            dynamics.center_of_mass_and_rates(&scratch.frames, columns)
+        });
+        Frame { origin, ..Frame::IDENTITY }
     }
 
     /// Checks that `values` has one complete and finite row for each of q, which has this length.

@@ -186,6 +186,7 @@ fn together(one: Assessment, other: Assessment) -> Assessment {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::Inertia;
     use crate::load::UrdfOptions;
     use crate::math::pose;
     use crate::task::{NamedTask, Region, Task, TaskKind, Tolerance};
@@ -218,9 +219,20 @@ mod tests {
         Robot::from_urdf_with(&(urdf + "</robot>"), &UrdfOptions { tips, ..UrdfOptions::default() }).unwrap()
     }
 
+    /// The robot with an inertia of each link; those of arm b are heavier.
+    fn with_masses(robot: &Robot) -> Robot {
+        let links: Vec<String> = robot.all_link_names().map(str::to_owned).collect();
+        let inertia = |link: &String| Inertia {
+            mass: if link.starts_with('b') { 2.5 } else { 1.0 },
+            center: [0.1, -0.2, 0.05],
+            matrix: [[0.02, 0.0, 0.0], [0.0, 0.03, 0.0], [0.0, 0.0, 0.04]],
+        };
+        robot.with_inertias(links.iter().map(|link| (link.as_str(), inertia(link)))).unwrap()
+    }
+
     #[test]
     fn derivatives_are_those_of_finite_differences() {
-        let robot = robot();
+        let robot = with_masses(&robot());
         let q = [0.3, -0.4, 0.2, 0.9, 1.3, -0.1, 0.5];
         let tool = Some(pose::from_rpy([0.1, -0.4, 0.2], [0.05, 0.0, 0.15]));
         let region = Region::new([-0.1, f64::NEG_INFINITY, 0.0], [0.2, 0.5, f64::INFINITY]).unwrap();
@@ -229,17 +241,24 @@ mod tests {
             Task { tool, ..TaskKind::Pose.into() },
             Task::new(TaskKind::Pose, Some(&weights), None, tool).unwrap(),
             TaskKind::Position.into(),
+            Task::new(TaskKind::Position, Some(&[1.0, 0.5, 0.0]), None, None).unwrap(),
             TaskKind::Orientation.into(),
             TaskKind::Pointing { axis: [0.0, 0.6, 0.8] }.into(),
             Task::from(TaskKind::Pose).within(region).unwrap(),
         ];
         let wanted = Target::from(&pose::from_rpy([0.3, 0.2, -0.4], [0.3, 0.1, 0.8]));
         for kind in kinds {
-            let subjects = [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }];
+            let is_position = kind.kind == TaskKind::Position;
+            let fourth = if is_position { Subject::CenterOfMass } else { Subject::Tip(1) };
+            let subjects =
+                [Subject::Tip(0), Subject::Pair { from: 1, of: 0 }, Subject::Pair { from: 0, of: 1 }, fourth];
             let tolerance = Tolerance::default();
             let task = |subject| NamedTask { subject, task: Some(kind), tolerance }.validated().unwrap();
             let tasks = subjects.map(|subject| if subject.is_pair() { task(subject).held(3.0) } else { task(subject) });
-            let mut targets = [wanted; 3];
+            let mut targets = [wanted; 4];
+            if is_position {
+                targets[3] = Target::Position([0.1, 0.2, 0.9]);
+            }
             tasks.iter().zip(&mut targets).for_each(|(task, target)| task.reduce(target).unwrap());
             let aims = Aims { tasks: &tasks, targets: &targets };
             let linearized = |q: &[f64]| {

@@ -6,7 +6,7 @@ use super::first::First;
 use super::subject::Subject;
 use super::target::Target;
 use super::tip_task::TaskKind;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::arithmetic::NoFma;
 use crate::math::box_step::ROWS;
 use crate::math::so3::cross;
@@ -100,8 +100,12 @@ impl CheckedTask {
     /// Reduces `target` to the part that its task uses.
     ///
     /// # Errors
-    /// [`Error::WrongTarget`](crate::Error::WrongTarget).
+    /// [`Error::WrongTarget`]; [`Error::Contradiction`] for a pose of the centre of mass.
     pub(crate) fn reduce(&self, target: &mut Target) -> Result<()> {
+        if self.subject == Subject::CenterOfMass && !matches!(target, Target::Position(_)) {
+            let problem = "the centre of mass has no orientation: its target is a position".into();
+            return Err(Error::Contradiction { problem });
+        }
         if let Some(kind) = &self.kind {
             *target = kind.target(target)?;
         }
@@ -118,21 +122,27 @@ impl CheckedTask {
 
     /// Frame of the subject at `q`.
     pub(crate) fn frame(&self, robot: &Robot, q: &[f64]) -> Frame {
-        self.frame_of(|tip| robot.tip_of(tip, q))
+        match self.subject {
+            Subject::CenterOfMass => robot.frame_at_center_of_mass(q, &mut []),
+            _ => self.frame_of(|tip| robot.tip_of(tip, q)),
+        }
     }
 
-    /// Frame of the subject, with each tip at the frame that `tip` returns.
+    /// Frame of the subject, a tip or a pair, with each tip at the frame that `tip` returns.
     pub(crate) fn frame_of(&self, tip: impl Fn(usize) -> Frame) -> Frame {
         let at_tool = |frame: Frame| self.tool.as_ref().map_or(frame, |tool| frame.then::<NoFma>(tool));
         match self.subject {
             Subject::Tip(of) => at_tool(tip(of)),
             Subject::Pair { from, of } => tip(from).inverse().then::<NoFma>(&at_tool(tip(of))),
+            Subject::CenterOfMass => Frame::IDENTITY,
         }
     }
 
     /// Frame of the subject at `q`, and its geometric Jacobian.
     pub(crate) fn frame_and_jacobian(&self, robot: &Robot, q: &[f64], columns: &mut Columns) -> Frame {
-        let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject;
+        let (Subject::Tip(of) | Subject::Pair { of, .. }) = self.subject else {
+            return robot.center_of_mass_and_jacobian(q, columns);
+        };
         let mut frame = robot.tip_and_jacobian_of(of, q, columns);
         if let Some(tool) = &self.tool {
             let moved = frame.then::<NoFma>(tool);
@@ -141,7 +151,7 @@ impl CheckedTask {
             frame = moved;
         }
         match self.subject {
-            Subject::Tip(_) => frame,
+            Subject::Tip(_) | Subject::CenterOfMass => frame,
             Subject::Pair { from, .. } => {
                 let mut own = Columns::default();
                 let base = robot.tip_and_jacobian_of(from, q, &mut own);

@@ -1,5 +1,6 @@
 //! Secondary goals: costs on the joints in the null space of the task.
 
+use super::least_torque::{LeastTorque, check_torque_scale};
 use crate::error::{Error, Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::message::{Setting, message};
@@ -54,17 +55,25 @@ pub enum Goal {
         /// Weight among several goals.
         weight: f64,
     },
+    /// Torques that hold the arm up, payloads included: the sum of (torque / scale)^2 over the joints.
+    LeastTorque {
+        /// What the torque of each joint is compared with (n,) (N m, N); a joint with infinity does not count. `None`: the rated torques;
+        /// where no joint has one, all joints count alike.
+        relative_to: Option<Vec<f64>>,
+        /// Weight among several goals.
+        weight: f64,
+    },
 }
 
 /// Goals compiled for one robot and its limits.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Goals {
     terms: Vec<Term>,
     gradient: Point,
 }
 
 /// Goal compiled for evaluation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 enum Term {
     /// Sum of stiffness * (q - rest)^2.
     Springs { stiffness: Vec<f64>, rest: Vec<f64> },
@@ -72,6 +81,8 @@ enum Term {
     Manipulability { measure: Manipulability, of: Part, weight: f64 },
     /// Nearness of bodies, times `weight`.
     Clearance { up_to: f64, weight: f64 },
+    /// Torques at rest.
+    Torque(Box<LeastTorque>),
 }
 
 /// Part of the arm that an index measures.
@@ -93,7 +104,8 @@ impl Goal {
             | Self::Centring { weight }
             | Self::Manipulability { weight, .. }
             | Self::LinkManipulability { weight, .. }
-            | Self::Clearance { weight, .. } => *weight,
+            | Self::Clearance { weight, .. }
+            | Self::LeastTorque { weight, .. } => *weight,
         }
     }
 
@@ -115,7 +127,7 @@ impl Goal {
     ///
     /// # Errors
     /// As [`validate_numbers`](Self::validate_numbers) and, for the posture, [`Robot::check`]; [`Error::Contradiction`] for a
-    /// clearance goal without collision checks.
+    /// clearance goal without collision checks; [`Error::NoDynamics`], [`Error::WrongLength`] and [`Error::OutOfRange`] for torques.
     pub fn validate(&self, robot: &Robot, among_obstacles: bool) -> Result<()> {
         self.validate_numbers()?;
         match self {
@@ -138,12 +150,13 @@ impl Goal {
                 robot.require_one_tip(message!["the goal Manipulability without ", Setting::Tip])
             }
             Self::LinkManipulability { .. } => robot.require_one_tip("the goal LinkManipulability"),
+            Self::LeastTorque { relative_to, .. } => check_torque_scale(robot, relative_to.as_deref()),
             _ => Ok(()),
         }
     }
 
-    fn term(&self, robot: &Robot, bounds: &Bounds) -> Term {
-        match self {
+    fn term(&self, robot: &Robot, bounds: &Bounds) -> Option<Term> {
+        Some(match self {
             Self::Posture { posture, weight } => {
                 Term::Springs { stiffness: vec![*weight; posture.len()], rest: posture.clone() }
             }
@@ -172,14 +185,17 @@ impl Goal {
                 weight: *weight,
             },
             Self::Clearance { up_to, weight } => Term::Clearance { up_to: *up_to, weight: *weight },
-        }
+            Self::LeastTorque { relative_to, weight } => {
+                Term::Torque(Box::new(LeastTorque::new(robot, relative_to.as_deref(), *weight)?))
+            }
+        })
     }
 }
 
 impl Goals {
     /// Compiles validated `goals` for `robot` within `bounds`.
     pub fn new(goals: &[Goal], robot: &Robot, bounds: &Bounds) -> Self {
-        let terms = goals.iter().map(|goal| goal.term(robot, bounds)).collect();
+        let terms = goals.iter().filter_map(|goal| goal.term(robot, bounds)).collect();
         Self { terms, gradient: Point::from_elem(0.0, robot.dof()) }
     }
 
@@ -192,14 +208,14 @@ impl Goals {
     pub fn cost(&mut self, robot: &Robot, space: Option<&ClearSpace<'_>>, q: &[f64], gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
         let one = &mut self.gradient;
-        self.terms.iter().map(|term| term.add(robot, space, q, one, gradient)).sum()
+        self.terms.iter_mut().map(|term| term.add(robot, space, q, one, gradient)).sum()
     }
 }
 
 impl Term {
     /// Adds the gradient at `q` to `gradient`, and returns the cost; `one` is scratch.
     fn add(
-        &self,
+        &mut self,
         robot: &Robot,
         space: Option<&ClearSpace<'_>>,
         q: &[f64],
@@ -223,13 +239,14 @@ impl Term {
                 };
                 let index = index.max(SINGULAR);
                 for (slope, one) in gradient.iter_mut().zip(one) {
-                    *slope -= weight * *one / index;
+                    *slope -= *weight * *one / index;
                 }
-                -weight * index.ln()
+                -*weight * index.ln()
             }
             Self::Clearance { up_to, weight } => {
-                space.map_or(0.0, |space| weight * space.nearness(q, *up_to, *weight, gradient))
+                space.map_or(0.0, |space| *weight * space.nearness(q, *up_to, *weight, gradient))
             }
+            Self::Torque(torque) => torque.add(robot, q, gradient),
         }
     }
 }

@@ -80,10 +80,7 @@ impl Levels {
     /// Which levels are met at `q`, and which are not, by the errors of each tip.
     pub fn in_words(&self, robot: &Robot, q: &[f64]) -> String {
         let names: SmallVec<[&str; 8]> = robot.tips().collect();
-        let name = |subject: Subject| match subject {
-            Subject::Tip(tip) => format!("'{}'", names[tip]),
-            Subject::Pair { from, of } => format!("('{}', '{}')", names[from], names[of]),
-        };
+        let name = |subject: Subject| subject.in_words(&names);
         let level = |aims: Aims<'_>| {
             let errors = aims.errors(robot, q);
             let each = aims.tasks.iter().zip(&errors).map(|(task, error)| (name(task.subject), error));

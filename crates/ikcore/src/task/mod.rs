@@ -15,6 +15,7 @@ mod components;
 mod criterion;
 mod first;
 mod goal;
+mod least_torque;
 mod levels;
 mod named_task;
 mod ranked;

@@ -7,7 +7,7 @@ use super::joint_path::JointPath;
 use super::violation::Violation;
 use crate::constraint::{HoldCheck, JointTorques, TIGHT, TipExcess, TipRates, TooHeavy, TorqueExcess};
 use crate::error::{Error, Result};
-use crate::limits::{Field, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
+use crate::limits::{Field, JointOutside, Limits, Profile, ROUNDING, StartSlack, TipField, no_pace};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::robot::{JointKind, Robot, limit_rounding};
@@ -159,6 +159,18 @@ impl ConstantLimits {
             }
         }
         Ok(())
+    }
+
+    /// Joints that are outside their position limits at the start of `motion`, beyond rounding.
+    pub fn start_outside(&self, motion: &Trajectory) -> Vec<JointOutside> {
+        let joint = |(j, value): (usize, f64)| {
+            let (lower, upper) = (self.lower[j], self.upper[j]);
+            let limit = value.clamp(lower, upper);
+            let (joint, kind) = &self.joints[j];
+            let is_outside = (value - limit).abs() > limit_rounding(lower, upper);
+            is_outside.then(|| JointOutside::new(joint.clone(), *kind, value, limit))
+        };
+        motion.start().into_iter().enumerate().filter_map(joint).collect()
     }
 
     /// Limits on derivatives of the position, with their names.
@@ -431,11 +443,17 @@ impl ConstantLimits {
         if self.tips.is_none() && self.keep_torque(&motion) {
             return Ok(motion);
         }
-        let factor = self.whole_slowdown(&motion, 1.0);
-        if factor <= 1.0 || factor.is_infinite() {
-            return Ok(motion);
+        Ok(self.slowed_if_held(&motion)?.unwrap_or(motion))
+    }
+
+    /// [`slowed_as_a_whole`](Self::slowed_as_a_whole); `None` where a joint cannot hold the arm.
+    pub(super) fn slowed_if_held(&self, motion: &Trajectory) -> Result<Option<Trajectory>> {
+        let factor = self.whole_slowdown(motion, 1.0);
+        if factor.is_infinite() {
+            return Ok(None);
         }
-        motion.slowed(factor * (1.0 + TIGHT))
+        let motion = motion.clone();
+        if factor <= 1.0 { Ok(Some(motion)) } else { motion.slowed(factor * (1.0 + TIGHT)).map(Some) }
     }
 
     /// Slows `motion` down as a whole where it exceeds the limits of tips.

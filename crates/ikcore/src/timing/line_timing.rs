@@ -82,30 +82,30 @@ impl JointPolyline {
         if limits.keep_whole(&motion) {
             return Ok(Paced { motion, is_kept: true });
         }
-        let slowed = |motion: Trajectory| {
-            let motion = limits.slowed_as_a_whole(motion)?;
-            let is_kept = limits.keep_torque(&motion);
-            Ok(Paced { motion, is_kept })
-        };
-        if limits.limit_jerk() || limits.require_accelerations("lines").is_err() {
-            return slowed(motion);
-        }
+        let may_jump = !limits.limit_jerk() && limits.require_accelerations("lines").is_ok();
+        // Along a single line no motion is faster than the fastest along it.
+        let as_a_whole = if may_jump && self.0.len() == 2 { None } else { limits.slowed_if_held(&motion)? };
+        let duration = as_a_whole.as_ref().map_or(f64::INFINITY, Trajectory::duration);
+        let may_be_faster = may_jump && duration > self.least_with_stops(limits);
+        let along = if may_be_faster { self.along(limits, motion.duration())? } else { None };
+        let paced = along.filter(|along| along.duration() < duration).or(as_a_whole);
+        let is_kept = paced.is_some();
+        Ok(Paced { motion: paced.unwrap_or(motion), is_kept })
+    }
+
+    /// The fastest motion along the lines, which stops at each point, but none faster than `least` (s); `None` if a joint cannot hold the arm.
+    fn along(&self, limits: &ConstantLimits, least: f64) -> Result<Option<Trajectory>> {
         let along = match time(&self.as_path(limits.joint_names()), limits, &TimingOptions::default()) {
-            Ok(along) => along,
-            // A joint cannot hold the arm.
-            Err(Error::Infeasible { .. }) if limits.limit_torque() => return slowed(motion),
-            Err(error) => return Err(error),
+            Err(Error::Infeasible { .. }) if limits.limit_torque() => return Ok(None),
+            other => other?,
         };
-        let ahead = motion.duration() / along.duration();
-        if ahead > 1.0 {
-            return Ok(Paced { motion: along.slowed(ahead)?, is_kept: true });
-        }
-        // Along a single line no motion is faster than the fastest along it. Along several a blend is faster at times, where it need not be
-        // slowed down more than to the same duration.
-        if self.0.len() > 2 && limits.keep_whole(&motion.clone().slowed(1.0 / ahead)?) {
-            return slowed(motion);
-        }
-        Ok(Paced { motion: along, is_kept: true })
+        let ahead = least / along.duration();
+        Ok(Some(if ahead > 1.0 { along.slowed(ahead)? } else { along }))
+    }
+
+    /// A duration (s) that no motion with stops at all points falls short of, whatever limits tips and torques have.
+    fn least_with_stops(&self, limits: &ConstantLimits) -> f64 {
+        self.0.windows(2).map(|line| line_profile(line, limits).duration).sum()
     }
 
     /// Moves from rest to rest along each line by a quintic.

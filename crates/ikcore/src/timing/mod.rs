@@ -7,6 +7,7 @@
 //! | `tube`, `least_bending` | the smooth paths that compete there |
 //! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
+//! | `recorded_noise` | [`recorded_noise()`]: what the noise of a recording costs |
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
 //! | `velocity_curve` | the velocity limits |
@@ -37,6 +38,7 @@ mod line_timing;
 mod polyline;
 mod quintic;
 mod reachability;
+mod recorded_noise;
 mod refine;
 mod spline;
 mod strips;
@@ -56,6 +58,7 @@ pub(crate) use limit_share::OneLimit;
 pub(crate) use line_timing::Paced;
 pub(crate) use polyline::JointPolyline;
 pub(crate) use quintic::unit_quintic;
+pub use recorded_noise::{RecordedNoise, recorded_noise};
 pub use time_optimal::{TimingOptions, time_optimal};
 pub(crate) use time_optimal::{coarse_duration, rough_duration, time, time_all};
 pub(crate) use time_scaling::scaled;

@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use super::doubt::UnitDoubt;
 use crate::kinematics::Reach;
-use crate::math::Pose;
 use crate::math::vector3::{norm, sub};
 use crate::robot::{BodySource, Robot};
 use crate::shape::{BoundingBall, Shape};
@@ -38,6 +37,11 @@ pub fn of_position(robot: &Robot, what: &str, tips: &[usize], position: &[f64; 3
     far_position(what, &ReachBall::of(robot, tips), position)
 }
 
+/// Doubts the position of a target of the centre of mass (m). `what` names it.
+pub fn of_center_of_mass(robot: &Robot, what: &str, position: &[f64; 3]) -> Option<UnitDoubt> {
+    if position.iter().any(|x| x.abs() > FAR) { far_position(what, &ReachBall::of_all(robot), position) } else { None }
+}
+
 #[cold]
 fn far_position(what: &str, ball: &ReachBall, position: &[f64; 3]) -> Option<UnitDoubt> {
     let largest = (0..3).max_by(|i, j| position[*i].abs().total_cmp(&position[*j].abs()))?;
@@ -46,11 +50,10 @@ fn far_position(what: &str, ball: &ReachBall, position: &[f64; 3]) -> Option<Uni
     doubted.then(|| UnitDoubt::millimetres(thing(), position[largest], ball.in_words()))
 }
 
-/// Doubts the offset of a tool from the tip of a robot (m).
-pub fn of_tool(robot: &Robot, tool: &Pose) -> Option<UnitDoubt> {
-    let offset: [f64; 3] = tool.translation.vector.into();
+/// Doubts the `offset` of a tool or a payload, the argument `what`, from a link of a robot (m).
+pub fn of_offset(robot: &Robot, what: &str, offset: &[f64; 3]) -> Option<UnitDoubt> {
     let ball = ReachBall { center: [0.0; 3], ..ReachBall::of(robot, &[0]) };
-    far_position("tool", &ball, &offset)
+    far_position(what, &ball, offset)
 }
 
 /// Doubts obstacles: all of them that are no floor or wall are far away, and one is within reach as millimetres.
@@ -226,7 +229,7 @@ mod tests {
         assert!(of_sizes(&robot.with_capsules_along_links(60.0).unwrap()).is_some());
         assert!(of_sizes(&Robot::planar(&[425.0, 392.0]).unwrap()).is_some());
         assert_eq!(of_sizes(&Robot::planar(&[10.0; 12]).unwrap()), None);
-        assert!(of_tool(&robot, &pose::translation(0.0, 0.0, 103.0)).is_some());
-        assert_eq!(of_tool(&robot, &pose::translation(0.0, 0.0, 20.0)), None);
+        assert!(of_offset(&robot, "tool", &[0.0, 0.0, 103.0]).is_some());
+        assert_eq!(of_offset(&robot, "tool", &[0.0, 0.0, 20.0]), None);
     }
 }

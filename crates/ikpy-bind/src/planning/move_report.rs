@@ -1,13 +1,10 @@
 //! `MoveReport` and `SpeedBound`.
 
 use ikcore::planning::{MoveReport, SpeedBound};
-use ikcore::stored::{from_bytes, to_bytes};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::error::raise;
-use crate::hash::content_hash;
-use crate::pickling::{self, Reduced};
+use crate::pickling::stored_value;
 
 /// How a move of a program came out.
 #[pyclass(name = "MoveReport", module = "beetle_ik", frozen, eq)]
@@ -54,21 +51,9 @@ impl PyMoveReport {
         let bound = if bound.is_empty() { String::new() } else { format!(", bound by {}", bound.join(", ")) };
         format!("<MoveReport{name}: {start:.3} to {end:.3} s, up to {speed:.4} m/s{bound}>")
     }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("report of a move", &self.0))?,))
-    }
-
-    /// Restores a pickled value.
-    #[staticmethod]
-    fn _restore(bytes: &[u8]) -> PyResult<Self> {
-        from_bytes("report of a move", bytes).map(Self).map_err(raise)
-    }
 }
+
+stored_value!(PyMoveReport, "report of a move");
 
 /// A limit that keeps the tip below the speed asked for.
 #[pyclass(name = "SpeedBound", module = "beetle_ik", frozen, eq)]
@@ -104,21 +89,9 @@ impl PySpeedBound {
     fn __repr__(&self) -> String {
         format!("<SpeedBound: {}>", words(&self.0))
     }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("bound of a speed", &self.0))?,))
-    }
-
-    /// Restores a pickled value.
-    #[staticmethod]
-    fn _restore(bytes: &[u8]) -> PyResult<Self> {
-        from_bytes("bound of a speed", bytes).map(Self).map_err(raise)
-    }
 }
+
+stored_value!(PySpeedBound, "bound of a speed");
 
 fn words(SpeedBound { limit, of, start, end }: &SpeedBound) -> String {
     format!("{limit} of '{of}' from {start:.3} to {end:.3} s")

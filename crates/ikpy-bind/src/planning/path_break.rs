@@ -1,12 +1,9 @@
 //! `Break`.
 
 use ikcore::planning::Break;
-use ikcore::stored::{from_bytes, to_bytes};
 use pyo3::prelude::*;
 
-use crate::error::raise;
-use crate::hash::content_hash;
-use crate::pickling::{self, Reduced};
+use crate::pickling::stored_value;
 
 /// A place where the tool leaves its path, and goes on with another posture of the arm or farther along.
 #[pyclass(name = "Break", module = "beetle_ik", frozen, eq)]
@@ -51,18 +48,6 @@ impl PyBreak {
         let place = if at == until { format!("at {at:.3}") } else { format!("from {at:.3} to {until:.3}") };
         format!("<Break {place}, {start:.3} to {end:.3} s: {reason}>")
     }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("break of a path", &self.0))?,))
-    }
-
-    /// Restores a pickled value.
-    #[staticmethod]
-    fn _restore(bytes: &[u8]) -> PyResult<Self> {
-        from_bytes("break of a path", bytes).map(Self).map_err(raise)
-    }
 }
+
+stored_value!(PyBreak, "break of a path");

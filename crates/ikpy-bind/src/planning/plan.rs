@@ -240,7 +240,7 @@ impl PyPlan {
             .as_ref()
             .map(|positions| table(py, positions.as_flattened().to_vec(), &[positions.len(), 3]).map(Bound::unbind));
         Ok(Self {
-            trajectory: Py::new(py, PyTrajectory::from(core.trajectory.clone()))?,
+            trajectory: Py::new(py, PyTrajectory::led(core.trajectory.clone(), &core.start_outside))?,
             history: table(py, history, &[core.history.len(), 2])?.unbind(),
             redundancy: table(py, orientations, &shape)?.unbind(),
             reference: reference.transpose()?,

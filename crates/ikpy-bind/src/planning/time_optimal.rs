@@ -2,17 +2,19 @@
 
 use ikcore::limits::Limits;
 use ikcore::planning::{
-    ConstantLimits, JointPath, SplineEnds, TimingOptions, time_optimal as fastest, time_optimal_within,
+    ConstantLimits, JointPath, SplineEnds, TimingOptions, recorded_noise, time_optimal as fastest, time_optimal_within,
 };
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 
 use crate::convert::{array, optional_count, shape_text, vector};
 use crate::error::{invalid, raise};
-use crate::limits::{PerJoint, PyLimits, Sampling, limits_of_call};
+use crate::limits::{PerJoint, Sampling, limits_of_call, required_limits};
 use crate::monitor::long_call;
+use crate::python_calls::warn_user;
 use crate::robot::PyRobot;
 use crate::trajectory::{PyTrajectory, names};
+use crate::wording::said;
 
 const METHOD: &str = "time_optimal";
 
@@ -41,11 +43,13 @@ const METHOD: &str = "time_optimal";
 ///     robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
 ///         `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
 ///
-/// Equal consecutive rows, as a recording has at rest, are one waypoint.
+/// Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
+/// says so: by how much which joint jitters, and the `tolerance` that smooths it.
 ///
 /// Returns:
 ///     A `Trajectory` exactly on the path, or on the smooth path inside `tolerance`: polynomials of degree 6 between grid
-///     points. With jerk limits it consists of quintic segments that meet the path at their ends.
+///     points. With jerk limits it consists of quintic segments that meet the path at their ends. A path that begins up to 5 degrees
+///     or 5 mm outside its position limits is led inside; `start_outside` names the joints.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, fewer than two waypoints that differ, or a negative tolerance.
@@ -66,7 +70,7 @@ const METHOD: &str = "time_optimal";
 pub fn time_optimal(
     py: Python<'_>,
     waypoints_q: &Bound<'_, PyAny>,
-    limits: &PyLimits,
+    limits: &Bound<'_, PyAny>,
     knots: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] spline: &str,
     blend: Option<f64>,
@@ -77,6 +81,7 @@ pub fn time_optimal(
     tolerance: Option<&Bound<'_, PyAny>>,
     robot: Option<&PyRobot>,
 ) -> PyResult<PyTrajectory> {
+    let limits = required_limits(limits)?;
     let waypoints = array("waypoints_q", waypoints_q)?;
     let &[_, n @ (1..)] = waypoints.shape() else {
         let got = shape_text(waypoints.shape());
@@ -120,9 +125,19 @@ pub fn time_optimal(
     };
     let tolerance = tolerance.map(|given| PerJoint::read("tolerance", given)).transpose()?;
     let tolerance = tolerance.map(|given| if given.single { vec![given.values[0]; n] } else { given.values });
-    long_call(py, || match tolerance {
-        None => fastest(&path()?, &limits, &options),
-        Some(tolerance) => time_optimal_within(&path()?, &tolerance, &limits, &options),
-    })
-    .map(PyTrajectory::from)
+    let (motion, noise) = long_call(py, || {
+        let path = path()?;
+        let motion = match &tolerance {
+            None => fastest(&path, &limits, &options)?,
+            Some(tolerance) => time_optimal_within(&path, tolerance, &limits, &options)?,
+        };
+        let tolerance = tolerance.unwrap_or_else(|| vec![0.0; n]);
+        let noise = recorded_noise(&path, &tolerance, &motion, &limits)?;
+        Ok((motion, noise))
+    })?;
+    if let Some(noise) = noise {
+        warn_user(py, &said(&noise.message()))?;
+    }
+    let outside = limits.start_outside(&motion);
+    Ok(PyTrajectory::led(motion, &outside))
 }

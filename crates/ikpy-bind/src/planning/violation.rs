@@ -1,12 +1,9 @@
 //! `Violation`.
 
 use ikcore::planning::Violation;
-use ikcore::stored::{from_bytes, to_bytes};
 use pyo3::prelude::*;
 
-use crate::error::raise;
-use crate::hash::content_hash;
-use crate::pickling::{self, Reduced};
+use crate::pickling::stored_value;
 
 /// A bound that a planned trajectory exceeds; `str` describes it in words.
 #[pyclass(name = "Violation", module = "beetle_ik", frozen, eq)]
@@ -46,18 +43,6 @@ impl PyViolation {
     fn __repr__(&self) -> String {
         format!("<Violation: {}>", self.0)
     }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("violation", &self.0))?,))
-    }
-
-    /// Restores a pickled value.
-    #[staticmethod]
-    fn _restore(bytes: &[u8]) -> PyResult<Self> {
-        from_bytes("violation", bytes).map(Self).map_err(raise)
-    }
 }
+
+stored_value!(PyViolation, "violation");

@@ -2,6 +2,7 @@
 
 use ikcore::dynamics::Inertia;
 use ikcore::robot::{LinkInertia, Motions, Robot};
+use ikcore::units;
 use numpy::{PyArray1, PyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -11,6 +12,7 @@ use crate::convert::{Numbers, Rows, array, copied, own, point, row, shape_text, 
 use crate::error::{invalid, raise};
 use crate::joint_order::{joint_rows, rate_rows};
 use crate::monitor::long_call;
+use crate::units::doubt;
 
 #[pymethods]
 impl PyRobot {
@@ -77,6 +79,7 @@ impl PyRobot {
         #[pyo3(from_py_with = crate::convert::optional_text)] link: Option<&str>,
     ) -> PyResult<Self> {
         let payload: Inertia = inertia::inertia(mass, center, matrix)?;
+        doubt(units::of_offset(&self.core, "center", &payload.center))?;
         self.core.with_payload(link, payload).map(Self::from).map_err(raise)
     }
 

@@ -1,17 +1,15 @@
 //! Manipulability and `VelocityEllipsoid`.
 
 use ikcore::manipulability::{Ellipsoid, Manipulability, Motion, manipulability, manipulability_all};
-use ikcore::stored::{from_bytes, to_bytes};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
 use super::PyRobot;
 use crate::convert::{Rows, own, row, table};
 use crate::error::raise;
-use crate::hash::content_hash;
 use crate::joint_order::{joint_rows, joint_vector};
 use crate::monitor::{QUICK_ROWS, in_pieces};
-use crate::pickling::{self, Reduced};
+use crate::pickling::stored_value;
 
 /// The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
 /// tip can move, longest first.
@@ -56,21 +54,9 @@ impl PyVelocityEllipsoid {
         let lengths: Vec<String> = self.0.lengths.iter().map(|length| format!("{length:.4}")).collect();
         format!("<VelocityEllipsoid: lengths {}>", lengths.join(", "))
     }
-
-    fn __hash__(&self) -> u64 {
-        content_hash(self)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        pickling::restored_from::<Self>(py, (pickling::bytes(py, to_bytes("ellipsoid", &self.0))?,))
-    }
-
-    /// Restores a pickled value.
-    #[staticmethod]
-    fn _restore(bytes: &[u8]) -> PyResult<Self> {
-        from_bytes("ellipsoid", bytes).map(Self).map_err(raise)
-    }
 }
+
+stored_value!(PyVelocityEllipsoid, "ellipsoid");
 
 #[pymethods]
 impl PyRobot {

@@ -18,7 +18,7 @@ impl PyRobot {
     /// Returns a copy with a tool: `tool` (4, 4) is the pose of the new tip in the frame of the tip link.
     fn with_tool(&self, tool: &Bound<'_, PyAny>) -> PyResult<Self> {
         let tool = rigid("tool", tool)?;
-        doubt(units::of_tool(&self.core, &tool))?;
+        doubt(units::of_offset(&self.core, "tool", &tool.translation.vector.into()))?;
         self.core.with_tool(tool).map(Self::from).map_err(raise)
     }
 

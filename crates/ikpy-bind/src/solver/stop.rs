@@ -25,6 +25,8 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
         let plain = enums.getattr("Enum")?;
         class.setattr("__str__", plain.getattr("__str__")?)?;
         class.setattr("__format__", plain.getattr("__format__")?)?;
+        // The number of SOLVED is 0: `if solution.status` would hold for failures alone.
+        class.setattr("__bool__", py.eval(c"lambda status: status == 0", None, None)?)?;
         class.setattr("__doc__", documentation())?;
         for status in Status::ALL {
             class.getattr(status.name())?.setattr("__doc__", status.meaning())?;
@@ -36,7 +38,8 @@ pub fn status_class(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
 
 fn documentation() -> String {
     let members = Status::ALL.iter().map(|status| format!("- `{}`: {}\n", status.name(), status.meaning()));
-    let summary = "How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success.";
+    let summary =
+        "How a solve, an item of a batch or a step of a track ended. Only `SOLVED` is success, and true in conditions.";
     format!("{summary}\n\n{}", members.collect::<String>())
 }
 

@@ -178,8 +178,8 @@ impl PyTracker {
 
     /// Moves the arm by one tick towards `target`, a pose (4, 4) or a position (3,) (m), inside the limits. For a robot
     /// with several `tips`, `target` is a dict, for example {"left_tool": T}; a tip left out is free. The key
-    /// ("left_tool", "right_tool") gives the second tip in the frame of the first. A pair that has reached its target
-    /// is held there, with priority over all other targets.
+    /// ("left_tool", "right_tool") gives the second tip in the frame of the first, "center_of_mass" is the centre of
+    /// all masses. A pair that has reached its target is held there, with priority over all other targets.
     ///
     /// Targets may come more rarely than ticks: `step(None)` means that there is no new target. Under acceleration or
     /// jerk limits the model-based rule then follows the motion of the last targets, for two of their intervals at

@@ -69,3 +69,8 @@ def differences_of(shape: Iterable[int], order: int) -> None:
 def scene_of(scene: Any) -> Scene:
     """Returns obstacles as a `Scene`, which prepares them once; None: no obstacles, the robot's own links alone."""
     return scene if isinstance(scene, Scene) else Scene([] if scene is None else scene)
+
+
+def axis_of_tips(robot: Robot, link: str | None) -> tuple[int, ...]:
+    """Returns the length of the axis of the tips, if there are several."""
+    return () if link is not None or len(robot.tips) == 1 else (len(robot.tips),)

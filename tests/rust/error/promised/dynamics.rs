@@ -35,6 +35,8 @@ pub fn masses_and_torques() -> Vec<Row> {
         "Robot::torques_all" NoDynamics: bare.torques_all(&motions(&[0.0; 6], None)), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";
         "Robot::torques_all" WrongLength: panda.torques_all(&motions(&[0.0; 7], Some(&[0.0; 14]))), "joint velocities of robot 'panda': expected 1 rows, as many as there are joint angles, got 2";
         "Robot::torques_all" NotFinite: panda.torques_all(&motions(&[0.0; 7], Some(&[NAN; 7]))), "joint velocities must be finite, but joint 'panda_joint1' of configuration 0 is NaN";
+        "Subject::center_of_mass" NoDynamics: Subject::center_of_mass(&arms()), "robot 'pair' has no dynamics: no link has a mass: give its links inertias";
+        "Subject::center_of_mass" Contradiction: Subject::center_of_mass(&panda), "the centre of mass is a task beside those of several tips; robot 'panda' has one";
         "Robot::accelerations_all" SingularMassMatrix: on_axis.accelerations_all(&[0.0, 1.0], &[0.0; 2], &[1.0; 2]), "configuration 0: the mass matrix of robot 'planar2' is singular: joint 'joint_2' and those before it can move without moving mass";
     }
 }

@@ -7,6 +7,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
     let nan = Sinusoid { mean: NAN, amplitude: 1.0, angular_frequency: 1.0, phase: 0.0 };
     let within = || Region::new([0.0; 3], [1.0; 3]).unwrap();
     let weighed = |kind, weights: &[f64]| Task::new(kind, Some(weights), None, None);
+    let least_torque = |relative_to| Goal::LeastTorque { relative_to, weight: 1.0 };
     let unbounded = Task::new(TaskKind::Position, None, Some(&[f64::INFINITY; 3]), None).unwrap();
     let kept = |tip, task| {
         let named = NamedTask { subject: Subject::Tip(tip), task, tolerance: Tolerance::default() };
@@ -45,6 +46,10 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Keep::new" Contradiction: kept(0, Some(Task::from(TaskKind::Position).at_level(1))), "what is kept comes before all targets, at every instant: leave out the level of its task, 1";
         "Keep::require_tips" Contradiction: kept(1, None).unwrap().require_tips(&two()), "something is to be kept for tip number 1, but the robot has 1";
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";
+        "Goal::validate" NoDynamics: least_torque(None).validate(&robot("ur5e"), false), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";
+        "Goal::validate" WrongLength: least_torque(Some(vec![1.0])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque: expected 7 (one per joint), got 1";
+        "Goal::validate" OutOfRange: least_torque(Some(vec![0.0; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque, joint 'panda_joint1', must be positive, infinite for a joint that does not count, got 0";
+        "Goal::validate" Contradiction: least_torque(Some(vec![f64::INFINITY; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque is infinite for all joints: none would count";
         "Algorithm::validate" OutOfRange: Algorithm::from(NewtonRaphson { step_fraction: 0.0 }).validate(), "step_fraction must be above 0 and at most 1, got 0";
         "DerivativeFree::validate" OutOfRange: DerivativeFree::from(Bas { c1: 0.0, ..Bas::default() }).validate(), "c1 must be positive and finite, got 0";
         "AnySolver::validate" OutOfRange: AnySolver::Single(Algorithm::from(NewtonRaphson { step_fraction: 0.0 })).validate(), "step_fraction must be above 0 and at most 1, got 0";

@@ -7,6 +7,9 @@ use crate::math::Frame;
 use crate::math::arithmetic::Baseline;
 use crate::math::vector3::{Vector, cross, dot, sub};
 
+/// Rounding of the cosine between two angles.
+const ROUNDING: f64 = 1e-6;
+
 /// PositionGoal of one query, in the frame of the first link.
 pub struct PositionGoal<'a> {
     /// Target position (m).
@@ -19,8 +22,10 @@ pub struct PositionGoal<'a> {
     pub tip: Vector,
     /// Limits of the axes (rad).
     pub limits: &'a [[f64; 2]; MOST_JOINTS],
-    /// Ranges of the first three axes.
-    pub ranges: [AngleRange; 3],
+    /// Ranges of the first four axes, wider than their limits.
+    pub ranges: [AngleRange; 4],
+    /// The same up to rounding.
+    pub inside: [TurnRange; 4],
     /// Range of the fifth axis.
     pub last: TurnRange,
 }
@@ -85,13 +90,16 @@ impl TurnRange {
     pub fn of([lower, upper]: [f64; 2]) -> Self {
         let half = 0.5 * (upper - lower);
         if half < std::f64::consts::PI {
-            Self { ends: [Angle::by(lower), Angle::by(upper)], middle: Angle::by(lower + half), least: half.cos() }
+            let least = half.cos() - ROUNDING;
+            Self { ends: [Angle::by(lower), Angle::by(upper)], middle: Angle::by(lower + half), least }
         } else {
             Self { ends: [Angle::NONE; 2], middle: Angle::NONE, least: -2.0 }
         }
     }
 
-    fn holds(&self, turn: Angle) -> bool {
+    /// Whether `turn` is inside, up to rounding.
+    #[inline]
+    pub fn holds(&self, turn: Angle) -> bool {
         self.middle.cos * turn.cos + self.middle.sin * turn.sin >= self.least
     }
 }

@@ -1,12 +1,14 @@
 //! Arms of three to five revolute joints whose first three carry the tip to a position: seeds for the nearest orientation there.
 //!
 //! A position takes three joints; the others are parameters. The fourth joint is scanned (`scan`), and for each of its values the
-//! first three follow in closed form, on all branches (`solutions`). The fifth joint turns the hand: its best value for the
+//! first three follow in closed form, on all branches (`solutions`). A branch that limits cut off so short that it lies between two
+//! values is found from its end, where one of the first three joints is at a limit and the others follow (`given_turn`). The fifth joint turns the hand: its best value for the
 //! orientation (`goal`) is known in closed form where the tip is on its axis. A tip near the axis is scanned as its nearest point
 //! there, which is where the target's orientation would have it; elsewhere the scan begins with a few turns of the fifth joint.
 //! Both alternate once. The seeds are the least angles along the scan, each moved to the vertex of the parabola through it and its
 //! neighbours.
 
+mod given_turn;
 mod goal;
 mod of_position;
 mod position_seeds;

@@ -43,12 +43,15 @@ const SLACK: f64 = 0.5;
 const WORSE: [f64; 2] = [0.1, 0.3];
 
 /// Difference of the angles (rad) of two seeds that lead to the same optimum.
-const SAME: f64 = 0.02;
+const SAME: f64 = 1e-4;
 
 /// What a descent may gain beyond a seed: the error of the parabola at its vertex, or the slope at the end of a column, times the first;
 /// at any end, and for a tip off the last axis, the second too.
 const RESERVE: f64 = 1.5;
 const LEAST_RESERVE: f64 = 0.02;
+
+/// The same from the end of a branch between two values of the scan.
+const BETWEEN: f64 = 0.3;
 
 /// Values of one joint (rad).
 type Values = SmallVec<[f64; VALUES]>;
@@ -86,6 +89,9 @@ impl PositionArm {
     ) {
         found.clear();
         let tip = self.tip.then::<Baseline>(tool);
+        if !self.moves(&tip.origin) {
+            return;
+        }
         let limits = self.drives.of_axes(lower, upper);
         let back = Frame { origin: [0.0; 3], ..tip }.inverse();
         let turned = Frame { origin: [0.0; 3], ..*target }.then::<Baseline>(&back);
@@ -98,6 +104,7 @@ impl PositionArm {
             tip: tip.origin,
             limits: &limits,
             ranges: std::array::from_fn(|j| AngleRange::of([limits[j][0] - slack, limits[j][1] + slack])),
+            inside: std::array::from_fn(|j| TurnRange::of(limits[j])),
             last: TurnRange::of(limits[MOST - 1]),
         };
         let values = self.scanned(&goal);
@@ -114,7 +121,8 @@ impl PositionArm {
         let least = minima.first().map_or(0.0, |minimum| minimum.sample.value);
         let worse = WORSE[usize::from(place != TipPlace::OnAxis)];
         let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
-        for minimum in minima.iter().take_while(|minimum| minimum.sample.value <= least + worse) {
+        let may_win = |minimum: &&ScanMinimum| minimum.sample.value - gain_beside(minimum, spacing) <= least + worse;
+        for minimum in minima.iter().filter(may_win) {
             let Some(seed) = self.seed(&goal, minimum, spacing, place) else { continue };
             if !found.iter().any(|other| self.are_same(&seed, other)) {
                 found.push(seed);
@@ -129,6 +137,7 @@ impl PositionArm {
     /// Least values of the scan, the least of all first.
     fn minima(&self, goal: &PositionGoal<'_>, values: &[f64], firsts: &[ScanFrom<'_>]) -> Minima {
         let mut scan = Scan::new(firsts.len());
+        let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
         for value in values {
             let fourth = self.fourth(*value);
             for (number, first) in firsts.iter().enumerate() {
@@ -136,7 +145,11 @@ impl PositionArm {
             }
             scan.end_row(*value);
         }
-        scan.finish()
+        scan.end();
+        if let [first @ ScanFrom::OnAxis] = firsts {
+            self.visit_limits(goal.limits, |given| self.visit(goal, given, first, |sample| scan.add_end(sample)));
+        }
+        scan.finish(spacing)
     }
 
     /// Values of the fourth joint (rad).
@@ -186,7 +199,10 @@ impl PositionArm {
         spacing: f64,
         place: TipPlace,
     ) -> (ScanSample, f64) {
-        let ScanMinimum { sample, beside, is_at_end, fourth } = minimum;
+        let ScanMinimum { sample, is_at_end, fourth, is_between, .. } = minimum;
+        if *is_between {
+            return (*sample, sample.value - gain_beside(minimum, spacing));
+        }
         let vertex = minimum.vertex(spacing);
         let nearby = self.solution_near(goal, sample, vertex.map_or(*fourth, |[fourth, _]| fourth), place);
         let best = match nearby {
@@ -197,7 +213,7 @@ impl PositionArm {
             (Some([_, least]), Some(nearby), TipPlace::OnAxis) => RESERVE * (nearby.value - least).abs(),
             (Some([_, least]), Some(nearby), _) => RESERVE * (nearby.value - least).abs() + LEAST_RESERVE,
             _ if *is_at_end => LEAST_RESERVE,
-            _ => RESERVE * (beside[0].min(beside[1]) - sample.value) + LEAST_RESERVE,
+            _ => gain_beside(minimum, spacing) + LEAST_RESERVE,
         };
         (best, best.value - reserve)
     }
@@ -228,6 +244,15 @@ impl PositionArm {
     /// Whether two seeds lead to the same optimum.
     fn are_same(&self, a: &Seed, b: &Seed) -> bool {
         (0..self.count).all(|j| (a.q[j] - b.q[j]).abs() < SAME)
+    }
+}
+
+/// What a descent from a minimum where a column begins or ends may gain beyond it, where no column goes.
+fn gain_beside(minimum: &ScanMinimum, spacing: f64) -> f64 {
+    match minimum.vertex(spacing) {
+        _ if minimum.is_between => BETWEEN,
+        Some(_) => 0.0,
+        None => RESERVE * (minimum.beside[0].min(minimum.beside[1]) - minimum.sample.value),
     }
 }
 
@@ -277,7 +302,7 @@ mod tests {
         let drives = Drives::new((0..joints.len()).map(|joint| (joint, 1.0)));
         let tip = Frame { origin: tip, ..Frame::IDENTITY };
         let basis = across(&all[joints.len() - 1].axis);
-        PositionArm { joints: all, count: joints.len(), tip, three, drives, size, basis }
+        PositionArm { joints: all, count: joints.len(), tip, three, drives, size, basis, at_limits: vec![] }
     }
 
     #[test]

@@ -16,6 +16,9 @@ pub const BRANCHES: usize = 4;
 /// Sum of three cosines below which two samples do not follow each other while others are more alike.
 const LEAST_ALIKE: f64 = 2.5;
 
+/// The same of the last sample of a column and the end of its branch.
+const LEAST_ALIKE_NEAR: f64 = 2.85;
+
 /// Sum of three cosines of a sample and an empty column.
 const UNLIKE: f64 = -4.0;
 
@@ -39,6 +42,8 @@ pub struct ScanMinimum {
     pub beside: [f64; 2],
     /// Whether the fourth joint is at the end of its values.
     pub is_at_end: bool,
+    /// Whether it is an end of a branch that no value of the scan lies on.
+    pub is_between: bool,
 }
 
 /// Least values of a scan.
@@ -61,6 +66,10 @@ pub struct Scan {
     /// Solutions of the row under way, with the numbers of their turns.
     now: SmallVec<[(usize, ScanSample); 2 * BRANCHES]>,
     found: Minima,
+    /// Where columns begin and end.
+    ends: SmallVec<[ScanSample; 4 * BRANCHES]>,
+    /// Ends of branches that limits cut off.
+    cut: SmallVec<[ScanSample; 4 * BRANCHES]>,
 }
 
 impl ScanSample {
@@ -72,7 +81,15 @@ impl Scan {
     pub fn new(turns: usize) -> Self {
         let column = Column { before: f64::INFINITY, here: ScanSample::NONE, next: ScanSample::NONE };
         let columns = SmallVec::from_elem(column, turns * BRANCHES);
-        Self { columns, fourth: 0.0, rows: 0, now: SmallVec::new(), found: Minima::new() }
+        Self {
+            columns,
+            fourth: 0.0,
+            rows: 0,
+            now: SmallVec::new(),
+            found: Minima::new(),
+            ends: SmallVec::new(),
+            cut: SmallVec::new(),
+        }
     }
 
     /// Adds a solution of the row under way, of the turn `number`.
@@ -124,9 +141,39 @@ impl Scan {
         }
     }
 
-    /// Least values along all columns, the least of all first.
-    pub fn finish(mut self) -> Minima {
+    /// Ends the last column.
+    pub fn end(&mut self) {
         self.keep_least(true);
+    }
+
+    /// Adds the end of a branch that a limit cuts off.
+    pub fn add_end(&mut self, sample: ScanSample) {
+        self.cut.push(sample);
+    }
+
+    /// Least values along all columns, the least of all first, and the ends of branches without a column: those that no column goes
+    /// to within `spacing` (rad) of the fourth joint. A column goes to the end that is most like its last sample.
+    pub fn finish(mut self, spacing: f64) -> Minima {
+        let near = spacing.cos() - 1e-9;
+        for end in &self.ends {
+            let mut most = LEAST_ALIKE_NEAR + near;
+            let mut own = None;
+            for (place, cut) in self.cut.iter().enumerate() {
+                let [fourth, other] = [end, cut].map(|sample| sample.turns[MOST - 2]);
+                let apart = fourth.cos * other.cos + fourth.sin * other.sin;
+                let alike = likeness(end, cut) + apart;
+                if apart >= near && alike > most {
+                    (most, own) = (alike, Some(place));
+                }
+            }
+            if let Some(place) = own {
+                self.cut.swap_remove(place);
+            }
+        }
+        for sample in self.cut {
+            let (fourth, beside) = (sample.turns[MOST - 2].angle(), [f64::INFINITY; 2]);
+            insert(&mut self.found, ScanMinimum { sample, fourth, beside, is_at_end: false, is_between: true });
+        }
         self.found
     }
 
@@ -134,16 +181,28 @@ impl Scan {
     fn keep_least(&mut self, is_at_end: bool) {
         for Column { before, here, next } in &self.columns {
             let value = here.value;
-            if !value.is_finite() || value > *before || value >= next.value {
+            if !value.is_finite() {
                 continue;
             }
-            let place = self.found.iter().position(|other| value < other.sample.value).unwrap_or(self.found.len());
-            if place < SEEDS {
-                self.found.truncate(SEEDS - 1);
-                let beside = [*before, next.value];
-                self.found.insert(place, ScanMinimum { sample: *here, fourth: self.fourth, beside, is_at_end });
+            let beside = [*before, next.value];
+            if beside.iter().any(|value| !value.is_finite()) {
+                self.ends.push(*here);
+            }
+            if value <= *before && value < next.value {
+                let fourth = self.fourth;
+                insert(&mut self.found, ScanMinimum { sample: *here, fourth, beside, is_at_end, is_between: false });
             }
         }
+    }
+}
+
+/// Inserts `minimum` in order; the worst is lost where there is no room.
+fn insert(found: &mut Minima, minimum: ScanMinimum) {
+    let value = minimum.sample.value;
+    let place = found.iter().position(|other| value < other.sample.value).unwrap_or(found.len());
+    if place < SEEDS {
+        found.truncate(SEEDS - 1);
+        found.insert(place, minimum);
     }
 }
 
@@ -183,7 +242,8 @@ mod tests {
             samples.iter().for_each(|(value, angle)| scan.add(0, sample(*value, *angle)));
             scan.end_row(row as f64);
         }
-        scan.finish()
+        scan.end();
+        scan.finish(1.0)
     }
 
     #[test]
@@ -196,6 +256,23 @@ mod tests {
         ]);
         let found: Vec<_> = found.iter().map(|minimum| (minimum.sample.value, minimum.fourth)).collect();
         assert_eq!(found, [(0.4, 1.0), (0.5, 2.0)]);
+    }
+
+    #[test]
+    fn each_column_goes_to_one_end_and_other_ends_are_kept() {
+        let mut scan = Scan::new(1);
+        for (value, angle) in [(0.5, 0.0), (0.4, 0.1)] {
+            scan.add(0, sample(value, angle));
+            scan.end_row(angle);
+        }
+        scan.end();
+        // The column goes to the nearest of these; the other two are the ends of a branch without a column, and of one elsewhere.
+        for (value, angle) in [(0.39, 0.12), (0.2, 0.15), (0.3, 2.0)] {
+            scan.add_end(sample(value, angle));
+        }
+        scan.add_end(sample(0.52, -0.05));
+        let found: Vec<_> = scan.finish(1.0).iter().map(|least| (least.sample.value, least.is_between)).collect();
+        assert_eq!(found, [(0.2, true), (0.3, true), (0.4, false)]);
     }
 
     #[test]

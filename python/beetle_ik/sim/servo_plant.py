@@ -1,28 +1,20 @@
-"""A simulated arm for testing controllers: MuJoCo with position servos, gravity and a sensor at the tip.
+"""An arm in MuJoCo with position servos, gravity and a sensor at the tip.
 
-It needs the extra `sim`. Only the kinematics comes from the robot: every link is simulated as a rod, so that a
-description needs no masses or meshes.
-
-    from beetle_ik.sim import MujocoPlant
-
-    plant = MujocoPlant.from_urdf("iiwa14.urdf", noise=1e-4)
-    controller = bik.BroydenBAS(max_evaluations_per_step=1)
-    result = bik.track_model_free(plant, path, start, dt=plant.dt, controller=controller)
+Every link is simulated as a rod, so that a description needs no masses or meshes.
 """
 
 from __future__ import annotations
 
 import os
-import sys
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from ._core import InvalidInputError, Robot, pose
-from .calls.arguments import require_one_tip
-from .calls.text import exact
-from .installed.needs import library
+from .._core import InvalidInputError, Robot, pose
+from ..calls.arguments import require_one_tip
+from ..calls.text import exact
+from .chain import joints_of, mujoco_library
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -76,7 +68,7 @@ class MujocoPlant:
             if not (np.isfinite(value) and value >= 0.0):
                 raise InvalidInputError(f"{name} must be zero or more and finite, got {value}")
         require_one_tip("MujocoPlant", robot)
-        self._mujoco = _mujoco()
+        self._mujoco = mujoco_library()
         self.robot = robot
         self.dt = dt
         self.noise = noise
@@ -214,16 +206,9 @@ class MujocoPlant:
         self.reset(np.clip(np.zeros(self.robot.dof), self.robot.lower, self.robot.upper))
 
 
-def _mujoco() -> Any:
-    # Selects EGL, the only way to render without a display; MuJoCo reads the variable at its import.
-    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-        os.environ.setdefault("MUJOCO_GL", "egl")
-    return library("mujoco", "mujoco", "simulation", extra="sim")
-
-
 def _description(robot: Robot, stiffness: float, mass: float, gravity: float) -> str:
     """Writes the robot as MJCF: a rod from each joint to the next, all frames parallel to the base at q = 0."""
-    kinds, axes, anchors, tip = _joints(robot)
+    kinds, axes, anchors, tip = joints_of(robot)
     ends = [*anchors[1:], tip]
     lengths = [max(float(np.linalg.norm(end - start)), _SHORTEST) for start, end in zip(anchors, ends, strict=True)]
     root = Element("mujoco", model=robot.name)
@@ -253,28 +238,6 @@ def _description(robot: Robot, stiffness: float, mass: float, gravity: float) ->
         SubElement(actuators, "position", joint=f"joint_{i}", kp=str(stiffness))
     SubElement(body, "site", name="tip", pos=exact(tip - origin), size="0.012", rgba="0.84 0.37 0 1")
     return tostring(root, encoding="unicode")
-
-
-def _joints(
-    robot: Robot,
-) -> tuple[list[str], list[NDArray[np.float64]], list[NDArray[np.float64]], NDArray[np.float64]]:
-    """Returns joint kinds, joint axes, a point on each axis, and the tip at q = 0, all from the Jacobian."""
-    zero = np.zeros(robot.dof)
-    jacobian, tip = robot.jacobian(zero), robot.fk(zero)[:3, 3]
-    origins = robot.link_poses(zero)[:, :3, 3]
-    axes, anchors = [], []
-    for i, kind in enumerate(robot.joint_kinds):
-        linear, angular = jacobian[:3, i], jacobian[3:, i]
-        near = origins[min(i + 1, len(origins) - 1)]
-        if kind == "prismatic":
-            axes.append(linear / np.linalg.norm(linear))
-            anchors.append(near)
-            continue
-        axis = angular / np.linalg.norm(angular)
-        on_axis = tip - np.cross(linear, axis)  # v = w x (tip - p), solved for p
-        axes.append(axis)
-        anchors.append(on_axis + axis * (axis @ (near - on_axis)))
-    return robot.joint_kinds, axes, anchors, tip
 
 
 def _add_scene(root: Element) -> None:
