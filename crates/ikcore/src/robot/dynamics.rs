@@ -97,7 +97,8 @@ impl Robot {
             return Ok(());
         }
         let problem = format!(
-            "robot '{}' differs from robot '{}' in more than masses, payloads and gravity, which alone may change while it is tracked: begin anew with the other robot",
+            "robot '{}' differs from robot '{}' in more than masses, payloads and gravity, which alone may change while it is \
+             tracked: begin anew with the other robot",
             self.name(),
             other.name()
         );
