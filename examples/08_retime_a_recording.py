@@ -35,7 +35,7 @@ recorded = np.round(guided / step) * step
 limits = bik.Limits(velocity=2.0, acceleration=10.0, jerk=100.0)
 names = robot.joint_names
 motion = bik.time_optimal(recorded, limits, joint_names=names, tolerance=2 * step)
-with warnings.catch_warnings(record=True) as said:
+with warnings.catch_warnings(record=True, action="always") as said:
     rough = bik.time_optimal(recorded, limits)
 print(said[0].message)
 print(f"{rough.duration:.1f} s through every row")
