@@ -202,6 +202,8 @@ fn an_arm_stops_before_what_a_joint_cannot_hold() {
     assert!(session.qd().iter().all(|rate| rate.abs() < 0.1), "{:?}", session.qd());
     let words = session.held_by_torque().unwrap();
     assert!(words.contains("joint 'panda_joint2' would need") && words.contains("its limit is"), "{words}");
+    let home = Target::from(&robot.fk(&START).unwrap());
+    assert_eq!(follow(&mut session, &home, 1500), Status::Solved);
 }
 
 #[test]

@@ -299,7 +299,9 @@ impl StopTorques {
         for (j, limit) in self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
             for side in [-1.0, 1.0] {
                 let growth = side * (to[j] - from[j]);
-                let room = MILD * limit - side * from[j] - (side * self.drag(rates[j], j)).max(0.0);
+                let all = limit - side * from[j] - (side * self.drag(rates[j], j)).max(0.0);
+                // Of the little that is left beyond that, half: an arm that holds itself with nearly all of a limit can still move.
+                let room = (all - (1.0 - MILD) * limit).max(0.5 * all);
                 if growth > room {
                     part = part.min((room / growth).max(0.0));
                 }

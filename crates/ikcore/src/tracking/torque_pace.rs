@@ -34,7 +34,7 @@ const AMPLE: f64 = 0.75;
 const NOW_AND_THEN: usize = 8;
 
 /// Part of a command below which the arm rather brakes.
-const SHORTEST: f64 = 0.02;
+const SHORTEST: f64 = 1e-3;
 
 /// Parts of the acceleration limits tried by an arm whose stop is no longer certified.
 const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
