@@ -17,6 +17,7 @@ from beetle_ik.cli.app import app
 PANDA = bik.Robot.named("panda")
 READY = np.array([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8])
 TARGET = PANDA.fk(READY)
+MOTION = bik.time_optimal([READY, 0.9 * READY], bik.Limits(velocity=1.0, acceleration=1.0))
 BUILT_IN = ", ".join(bik.Robot.names())
 OF_SOLVE = (
     "robot, target, task, start, solver, position_tolerance, rotation_tolerance, goals, prefer, joint_weights, limits, "
@@ -89,6 +90,27 @@ SOLVERS = (
             lambda: bik.solve(PANDA, TARGET, READY),  # type: ignore[misc]
             bik.CallError,
             "solve() takes 2 positional arguments but 3 were given: name the others, such as task=...",
+        ),
+        (
+            lambda: bik.time_optimal([READY, 0.9 * READY], None),  # type: ignore[arg-type]
+            bik.CallError,
+            "limits must be a Limits, such as Limits(velocity=1.5, acceleration=5.0), got None",
+        ),
+        (
+            lambda: MOTION.sample(np.linspace(0, 1, 3)),  # type: ignore[arg-type]
+            bik.CallError,
+            "dt must be a number of seconds, got array([0. , 0.5, 1. ]); at(t) gives the motion at given times",
+        ),
+        (
+            lambda: bik.moves.Line([0.4, 0.1, 0.3]),
+            bik.InvalidInputError,
+            "pose: expected shape (4, 4), got (3,), a position; bik.pose(position, rpy=angles) makes a pose of it and "
+            "angles",
+        ),
+        (
+            lambda: bik.plan_point_to_point(PANDA, start_q=READY, end_q=READY),
+            bik.InvalidInputError,
+            "trajectory: start and end are the same configuration: the arm is there already, nothing is to be planned",
         ),
         (
             lambda: bik.solve(PANDA, TARGET, margin="5mm"),  # type: ignore[arg-type]

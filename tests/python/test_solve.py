@@ -89,6 +89,13 @@ def test_a_result_says_what_happened() -> None:
     assert (f"{found.status}", f"{found.status:>15}") == ("Status.SOLVED", "  Status.SOLVED")
 
 
+def test_a_status_is_true_where_it_is_success() -> None:
+    robot = bik.Robot.planar([1.0, 1.0])
+    assert bik.solve(robot, [1.0, 0.5, 0.0]).status
+    assert not bik.solve(robot, [3.0, 0.0, 0.0]).status
+    assert [status for status in bik.Status if status] == [bik.Status.SOLVED]
+
+
 def test_a_position_leaves_the_orientation_free() -> None:
     found = bik.solve(bik.Robot.named("panda"), [0.4, 0.1, 0.5])
     assert found.success

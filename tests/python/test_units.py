@@ -97,6 +97,16 @@ def test_obstacles_in_millimetres_warn_in_each_call(call: Callable[[], object]) 
     assert said(call) == [SPHERE]
 
 
+def test_payloads_and_speeds_of_moves_in_millimetres_warn() -> None:
+    (payload,) = said(lambda: PANDA.with_payload(1.0, center=(0, 0, 100)))
+    assert payload.startswith("center: z is 100 m (the arm reaches")
+    line = bik.moves.Line(PANDA.fk(READY), speed=50)
+    program = [bik.moves.Joints(0.9 * READY), line]
+    limits = bik.Limits(acceleration=5.0)
+    (speed,) = said(lambda: bik.plan_moves(PANDA, program, start_q=READY, limits=limits))
+    assert speed.startswith("speed of move 1 is 50 m/s (no arm is as fast), which looks like")
+
+
 def test_a_tracker_warns_once_of_its_targets() -> None:
     tracker = bik.Tracker(PANDA, READY, dt=0.01)
 

@@ -299,6 +299,9 @@ pub fn rigid(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let array = array(what, value)?;
     match array.shape() {
         [4, 4] => rigid_rows(what, array.as_slice()?),
+        [3] => Err(invalid(format!(
+            "{what}: expected shape (4, 4), got (3,), a position; bik.pose(position, rpy=angles) makes a pose of it and angles"
+        ))),
         shape => Err(invalid(format!("{what}: expected shape (4, 4), got {}", shape_text(shape)))),
     }
 }

@@ -31,8 +31,10 @@ fn invalid(problem: impl Into<Message>) -> Error {
 /// Checks the configurations: they differ, and are in radians.
 pub(super) fn check_configurations(robot: &Robot, measured: &Measured, qs: &[f64]) -> Result<()> {
     let n = robot.dof();
-    if measured.count() < 2 {
-        return Err(invalid(format!("{} measurement: two or more are needed", measured.count())));
+    let count = measured.count();
+    if count < 2 {
+        let noun = if count == 1 { "measurement" } else { "measurements" };
+        return Err(invalid(format!("{count} {noun}: two or more are needed")));
     }
     let widest = (0..n).map(|joint| range(qs, n, joint)).fold(0.0, f64::max);
     if widest < STILL {

@@ -4,7 +4,6 @@ use crate::error::{Error, Result};
 use crate::math::vector::largest_difference;
 use crate::objective::Point;
 use crate::timing::JointPolyline;
-use crate::wording::number;
 
 /// Configurations of both ends, and the duration of a quintic between them (s).
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +35,8 @@ impl EndPair {
         if largest > 0.0 {
             return Ok(());
         }
-        let problem = format!("start and end are the same configuration (largest difference {} rad)", number(largest));
+        let problem =
+            "start and end are the same configuration: the arm is there already, nothing is to be planned".into();
         Err(Error::InvalidTrajectory { problem })
     }
 }

@@ -40,13 +40,17 @@ pub fn of_limits_of_call(robot: &Robot, limits: &Limits) -> Vec<UnitDoubt> {
     doubts
 }
 
+/// Doubts a speed of a tip (m/s), which `what` names.
+pub fn of_tip_speed(what: &str, speed: f64) -> Option<UnitDoubt> {
+    (speed >= FAST_TIP).then(|| UnitDoubt::millimetres_per_second(what, speed, "no arm is as fast"))
+}
+
 /// Doubts limits of tips.
 fn of_tips(limits: &Limits) -> impl Iterator<Item = UnitDoubt> {
     let largest =
         |field: TipField| limits.of_tips(field).iter().copied().filter(|limit| limit.is_finite()).fold(0.0, f64::max);
     let [speed, turn] = [TipField::Speed, TipField::TurnSpeed].map(largest);
-    let speed =
-        (speed >= FAST_TIP).then(|| UnitDoubt::millimetres_per_second("tip speed limit", speed, "no arm is as fast"));
+    let speed = of_tip_speed("tip speed limit", speed);
     let turn = (turn >= FAST_TURN).then(|| UnitDoubt::degrees_per_second("tip turn speed limit", turn));
     speed.into_iter().chain(turn)
 }

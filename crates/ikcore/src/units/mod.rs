@@ -28,4 +28,4 @@ pub use angles::{MANY_TURNS, of_dh_angles, of_rotation_vector, of_rpy, of_rpy_in
 pub use doubt::{Unit, UnitDoubt};
 pub use joints::of_configurations;
 pub use lengths::{of_center_of_mass, of_obstacles, of_offset, of_position, of_sizes};
-pub use limits::{of_converted_limits, of_limits, of_limits_of_call};
+pub use limits::{of_converted_limits, of_limits, of_limits_of_call, of_tip_speed};

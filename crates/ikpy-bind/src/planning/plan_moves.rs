@@ -1,7 +1,8 @@
 //! `plan_moves`.
 
 use ikcore::obstacle::Surroundings;
-use ikcore::planning::{self, MovesOptions};
+use ikcore::planning::{self, Move, MoveKind, MovesOptions};
+use ikcore::units::{self, UnitDoubt};
 use pyo3::prelude::*;
 
 use super::moves::read_moves;
@@ -15,6 +16,7 @@ use crate::obstacle::GivenObstacles;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
+use crate::units::doubt;
 use crate::wording::said;
 
 /// Plans the motion of a program of moves, from rest at `start_q` to rest.
@@ -80,6 +82,7 @@ pub fn plan_moves(
 ) -> PyResult<PyPlan> {
     let arm = robot.get().core.clone();
     let moves = read_moves(moves)?;
+    doubt(moves.iter().enumerate().filter_map(doubted_speed))?;
     let start = joint_vector(&arm, "start_q", start_q)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
@@ -93,4 +96,14 @@ pub fn plan_moves(
     let plan = watched(py, progress, |watcher| planning::plan_moves(&arm, &moves, &start, &options, watcher))?;
     python_calls::log(py, "plan_moves", &said(&plan.message()))?;
     PyPlan::new(plan, robot, in_force, given.tuple)
+}
+
+/// Doubts the speed of a move.
+fn doubted_speed((index, each): (usize, &Move)) -> Option<UnitDoubt> {
+    match each.kind {
+        MoveKind::Line { speed, .. } | MoveKind::Arc { speed, .. } => {
+            units::of_tip_speed(&format!("speed of move {index}"), speed?)
+        }
+        MoveKind::Joints(_) | MoveKind::Wait(_) => None,
+    }
 }
