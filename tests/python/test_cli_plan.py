@@ -130,7 +130,7 @@ def test_breaks_of_a_path_are_printed(tmp_path: Path) -> None:
 
     refused = along()
     assert refused.exit_code != 0
-    assert "; --breaks, which lets the tool leave the path there and go on" in refused.output.replace("\n", " ")
+    assert "; try --breaks, which lets the tool leave the path there and go on" in refused.output.replace("\n", " ")
     done = along("--breaks", "--json")
     [only] = json.loads(done.stdout)["breaks"]
     assert only["at"] < only["until"]
