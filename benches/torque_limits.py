@@ -123,7 +123,7 @@ def plan(folder: Path, payload: float, every: int) -> None:
     times, without, largest, refused = [], [], 0.0, []
     problems = arm.problems()[::every]
     for problem in problems:
-        ends = {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem)}
+        ends = {"start_q": problem["start"], "end_q": problem["goal"], "obstacles": arm.scene(problem), "margin": 0.0}
         _, spent = cpu(lambda ends=ends: bik.plan_point_to_point(robot, limits=free, **ends))
         without.append(spent)
         try:
