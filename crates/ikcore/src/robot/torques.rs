@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use smallvec::SmallVec;
+
 use super::model::Robot;
 use crate::dynamics::{AppliedWrench, DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result, require_finite};
@@ -55,7 +57,8 @@ impl Robot {
         motions.qd.map_or(Ok(()), |qd| self.require_rows("joint velocities", qd, length))?;
         motions.qdd.map_or(Ok(()), |qdd| self.require_rows("joint accelerations", qdd, length))?;
         let is_held = motions.qd.is_none() && motions.qdd.is_none() && wrenches.is_empty();
-        let (rest, tips, mut applied) = (vec![0.0; self.dof()], self.tip_count(), vec![]);
+        let rest: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.dof());
+        let (tips, mut applied) = (self.tip_count(), vec![]);
         let mut torques = vec![0.0; length];
         self.with_scratch(dynamics, |scratch| {
             for (row, (q, torques)) in rows.zip(torques.chunks_exact_mut(self.dof())).enumerate() {
