@@ -34,8 +34,7 @@ pub(super) struct PathTime {
 
 /// The fastest motion along `path` that keeps the largest path speeds of its pieces.
 ///
-/// With jerk limits the whole motion is at last slowed, and with it the speeds. So the timing is repeated with speeds that are as much
-/// higher as all fell short, or lower on the pieces alone that were too fast.
+/// With jerk limits the whole motion is at last slowed by a little, and with it the speeds; so these are then asked for once more.
 ///
 /// # Errors
 /// Those of `time_optimal`.
@@ -47,31 +46,26 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
     if !limits.limit_jerk() || asked.iter().all(|speed| speed.is_infinite()) {
         return Ok(motion);
     }
-    let (motion, ratios) = at_most_asked(path, &asked, motion)?;
-    let reached = largest(&ratios);
-    if reached < NEARLY || (1.0 - SLOWER..=1.0 + FASTER).contains(&reached) {
+    let (motion, reached) = at_most_asked(path, &asked, motion)?;
+    if !(NEARLY..1.0 - SLOWER).contains(&reached) {
         return Ok(motion);
     }
-    let excess = |ratio: f64| if reached > 1.0 { ratio.max(1.0) } else { reached };
-    let speeds = asked.iter().zip(&ratios).map(|(speed, ratio)| speed / excess(*ratio)).collect();
+    let speeds = asked.iter().map(|speed| speed / reached).collect();
     let again = time(&path.clone().with_speeds(speeds), limits, &options)?;
     let (again, _) = at_most_asked(path, &asked, again)?;
     Ok(if again.duration() < motion.duration() { again } else { motion })
 }
 
-/// The motion, slowed if it exceeds the speeds asked for; and the largest share of them that it had on each piece.
-fn at_most_asked(path: &JointPath, asked: &[f64], motion: Trajectory) -> Result<(Trajectory, Vec<f64>)> {
-    let mut ratios = vec![0.0_f64; asked.len()];
-    for at in path_times(path, &motion)? {
-        let piece = path.locate(at.s).0;
-        ratios[piece] = ratios[piece].max(at.rate / asked[piece]);
-    }
-    let reached = largest(&ratios);
-    Ok((if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion }, ratios))
+/// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
+fn at_most_asked(path: &JointPath, asked: &[f64], motion: Trajectory) -> Result<(Trajectory, f64)> {
+    let reached = largest_ratio(path, asked, &motion)?;
+    Ok((if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion }, reached))
 }
 
-fn largest(ratios: &[f64]) -> f64 {
-    ratios.iter().copied().fold(0.0, f64::max)
+/// Largest path speed relative to the one asked for.
+fn largest_ratio(path: &JointPath, asked: &[f64], motion: &Trajectory) -> Result<f64> {
+    let ratio = |at: &PathTime| at.rate / asked[path.locate(at.s).0];
+    Ok(path_times(path, motion)?.iter().map(ratio).fold(0.0, f64::max))
 }
 
 /// Path parameters of a motion along a path from rest to rest, at the knots of the motion and between them.
