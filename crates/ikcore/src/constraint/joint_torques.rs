@@ -195,6 +195,19 @@ impl JointTorques {
         self.dynamics.holding(&mut at.scratch, hold);
     }
 
+    /// Writes what holds the arm at a point, and the gradient (n,) of each of these torques, row by row (n, n).
+    pub fn write_hold_and_gradients(&self, at: &mut TorquePoint, hold: &mut [f64], gradients: &mut [f64]) {
+        self.write_hold(at, hold);
+        gradients.fill(0.0);
+        let TorquePoint { first: rates, scratch, .. } = at;
+        // The matrix is symmetric: what one joint changes is what changes its torque.
+        for (joint, gradient) in gradients.chunks_exact_mut(self.dof()).enumerate() {
+            rates.fill(0.0);
+            rates[joint] = 1.0;
+            self.dynamics.add_holding_slope(scratch, rates, gradient);
+        }
+    }
+
     /// Writes the factors of (ds/dt)^2.
     fn write_square(&self, at: &mut TorquePoint, terms: &mut TorqueTerms) {
         self.inverse(at, Derivatives::Both, &mut terms.of_square);

@@ -16,9 +16,8 @@ use crate::robot::Robot;
 /// Part of a torque limit that a milder stop would use.
 const MILD: f64 = 0.97;
 
-/// Part of a torque limit beyond which its gradient counts, and the step of its differences (rad, m).
+/// Part of a torque limit beyond which its gradient counts.
 const CLOSE: f64 = 0.8;
-const DIFFERENCE: f64 = 1e-6;
 
 /// Certificate; owns its scratch.
 #[derive(Debug)]
@@ -143,31 +142,17 @@ impl StopTorques {
     /// and the gradient (n,) of its size.
     pub fn each_hold(&mut self, q: &[f64], mut take: impl FnMut(f64, &[f64])) {
         let n = q.len();
+        let Self { torques, point, gradients, .. } = self;
         let mut hold = Point::from_elem(0.0, n);
-        self.write_hold(q, &mut hold);
-        self.gradients.resize(n * n, 0.0);
-        let (mut near, mut there) = (Point::from_slice(q), hold.clone());
-        for k in 0..n {
-            near[k] = q[k] + DIFFERENCE;
-            self.write_hold(&near, &mut there);
-            near[k] = q[k];
-            for j in 0..n {
-                self.gradients[j * n + k] = (there[j] - hold[j]) * hold[j].signum() / DIFFERENCE;
-            }
-        }
-        for (j, limit) in self.torques.limits().iter().enumerate() {
+        point.q.copy_from_slice(q);
+        torques.write_hold_and_gradients(point, &mut hold, gradients);
+        for (j, limit) in torques.limits().iter().enumerate() {
             if hold[j].abs() > CLOSE * limit {
-                take(hold[j].abs() - MILD * limit, &self.gradients[j * n..(j + 1) * n]);
+                let gradient = &mut gradients[j * n..(j + 1) * n];
+                gradient.iter_mut().for_each(|slope| *slope *= hold[j].signum());
+                take(hold[j].abs() - MILD * limit, gradient);
             }
         }
-    }
-
-    fn write_hold(&mut self, q: &[f64], hold: &mut [f64]) {
-        let at = &mut self.point;
-        at.q.copy_from_slice(q);
-        at.first.fill(0.0);
-        at.second.fill(0.0);
-        self.torques.write_torques(at, hold);
     }
 
     /// Part of the way from the command `brake` to the one with the torques last found beyond a limit, `tick` ticks after it, on which all
