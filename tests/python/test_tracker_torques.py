@@ -197,7 +197,9 @@ def test_wrong_calls_are_refused_by_name() -> None:
         with pytest.raises(bik.InvalidInputError, match="differs from robot 'panda' in more than masses, payloads and"):
             tracker.robot = other
     for other in (None, "panda", 3):
-        with pytest.raises(TypeError):
+        with pytest.raises(
+            bik.CallError, match=r"^robot must be a Robot, such as tracker.robot.with_payload\(2\), got"
+        ):
             api.Tracker.robot.__set__(tracker, other)
     with pytest.raises(bik.InvalidInputError, match="mass"):
         tracker.robot = PANDA.with_payload(-1.0)

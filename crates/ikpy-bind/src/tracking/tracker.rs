@@ -17,8 +17,8 @@ use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
 use super::session::in_progress;
 use super::step::PyStep;
-use crate::convert::{drifted_rows, point, vector};
-use crate::error::{invalid, raise};
+use crate::convert::{drifted_rows, point, summary, vector};
+use crate::error::{invalid, misfit, raise};
 use crate::ik::read_target_by;
 use crate::joint_order::{joint_numbers, joint_vector};
 use crate::keep::{PyKeep, read_keeps};
@@ -320,7 +320,10 @@ impl PyTracker {
     }
 
     #[setter]
-    fn set_robot(&self, robot: &Bound<'_, PyRobot>) -> PyResult<()> {
+    fn set_robot(&self, robot: &Bound<'_, PyAny>) -> PyResult<()> {
+        let wrong =
+            |_| misfit(format!("robot must be a Robot, such as tracker.robot.with_payload(2), got {}", summary(robot)));
+        let robot = robot.cast::<PyRobot>().map_err(wrong)?;
         self.session().set_robot(&robot.get().core).map_err(raise)?;
         *self.carrying() = Some(robot.clone().unbind());
         Ok(())
