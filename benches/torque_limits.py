@@ -125,9 +125,7 @@ def time_paths(name: str, count: int) -> None:
     print(f"{name}: {len(rows)} paths; {refused} refused because a joint cannot hold the arm, {unsolved} not by toppra")
     for points, ratio in zip((POINTS, FINE), table.T, strict=False):
         print(f"  duration over toppra's of {points} points: median {np.median(ratio):.4f}, largest {ratio.max():.4f}")
-    print(
-        f"  largest part of a torque limit: {table[:, 2].max():.9f}, toppra's of {POINTS} points {table[:, 3].max():.4f}"
-    )
+    print(f"  largest part of a limit: {table[:, 2].max():.9f}, toppra's of {POINTS} points {table[:, 3].max():.4f}")
     spent, without, others = np.median(table[:, 4:], axis=0)
     print(f"  median: {spent:.2f} ms, without torque limits {without:.2f}, toppra {others:.2f}", flush=True)
 
