@@ -346,10 +346,11 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
                     // SAFETY: as above.
                     let named = unsafe { Bound::from_borrowed_ptr_or_opt(py, keywords) };
                     let named = named.and_then(|named| named.cast_into().ok()).unwrap_or_else(|| PyDict::new(py));
-                    first = recall(py, made.as_any(), || Ok((arguments.clone(), named)), |_, renamed| {
-                        let again = instance(renamed.as_ptr());
-                        if again.is_null() { Err(PyErr::fetch(py)) } else { Ok(again) }
-                    });
+                    let again = |_: &Bound<'_, PyTuple>, renamed: &Bound<'_, PyDict>| {
+                        let second = instance(renamed.as_ptr());
+                        if second.is_null() { Err(PyErr::fetch(py)) } else { Ok(second) }
+                    };
+                    first = recall(py, made.as_any(), || Ok((arguments.clone(), named)), again);
                 }
                 with_doubts(first)
             }

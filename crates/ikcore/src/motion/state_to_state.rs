@@ -46,7 +46,8 @@ pub fn state_to_state_from(from: &ArmState, to: &ArmState, limits: &Limits, slac
         return Err(Error::Infeasible { problem: "no motion within the limits connects the two states".into() });
     };
     if motion.duration() == 0.0 {
-        let problem = "start_q and end_q, with their velocities and accelerations, are the same state: nothing moves".into();
+        let problem =
+            "start_q and end_q, with their velocities and accelerations, are the same state: nothing moves".into();
         return Err(Error::InvalidTrajectory { problem });
     }
     require_room(limits, &from.q, &motion)?;
