@@ -174,7 +174,7 @@ fn errors_name_the_joint_and_the_bound() {
     );
     assert_eq!(
         message(&two(&[0.0; 2]), &two(&[1.5, 0.0]), &narrow),
-        "q1: joint '0' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose"
+        "end_q: joint '0' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose"
     );
     let none = Limits::none_for(2).replace(Field::Jerk, vec![Profile::Constant(5.0), Profile::Constant(f64::INFINITY)]);
     assert_eq!(
