@@ -200,7 +200,8 @@ impl TorquePace {
                 let wanted = q.clone();
                 let part = self.replace(arm, &mut others, failed, q);
                 if let Some(overload) = failed.filter(|overload| overload.is_at_rest || part < SLOWED) {
-                    (self.held_by, self.free_for) = (self.held_by.filter(|_| !self.is_certified()).or(Some(overload)), 0.0);
+                    (self.held_by, self.free_for) =
+                        (self.held_by.filter(|_| !self.is_certified()).or(Some(overload)), 0.0);
                 }
                 *q != wanted
             }
