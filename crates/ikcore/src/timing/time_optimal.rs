@@ -27,8 +27,8 @@ pub struct TimingOptions {
 /// Number of segments before refinement.
 const FIRST_SEGMENTS: usize = 100;
 
-/// Part of the duration that the grid may cost. Where torques are limited a segment takes three times as long to compute.
-const CONVERGED: f64 = 2e-4;
+/// Part of the duration that the grid may cost by estimate; it costs two to four times as much. Where torques are limited a segment takes three times as long to compute.
+const CONVERGED: f64 = 1e-4;
 const CONVERGED_WITH_TORQUES: f64 = 1e-3;
 
 /// Number of segments if jerk limits are to be kept: the profile then only says where the motion takes its time.

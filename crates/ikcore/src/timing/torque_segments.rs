@@ -185,7 +185,7 @@ impl<'a> TorqueSegments<'a> {
         let (mut holds, mut is_tight) = (true, true);
         for (joint, limit) in self.limited() {
             let [of_hold, of_square, of_change] = rest_of(joint);
-            let largest = largest(terms, joint, |terms| &terms.hold) + of_hold;
+            let largest = largest(terms.map(|terms| terms.hold[joint])) + of_hold;
             holds &= largest + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
             is_tight &= !(of_change * most[0] + of_square * most[1] + of_hold > self.negligible * limit);
         }
@@ -268,7 +268,7 @@ impl<'a> TorqueSegments<'a> {
         let [_, first, second] = self.path.joint_at(segment.piece, segment.from + part.ends[0] + half, joint);
         let third = 6.0 * self.path.powers(segment.piece)[3][joint];
         let most = (half * second).abs() + (0.5 * half * half * third).abs();
-        let room = limit - largest(part.nodes.map(|node| &self.terms[node]), joint, |terms| &terms.hold);
+        let room = limit - largest(part.nodes.map(|node| self.terms[node].hold[joint]));
         [first + most, most - first].map(|rate| friction.drag(rate, room, square))
     }
 
@@ -317,16 +317,17 @@ impl KeptTorque {
         let Self { ends: [from, to], limit, rest: [rest_g, rest_b, rest_a], drags } = *self;
         // The most that it can be, quickly: few joints come near their limit.
         let friction = drags.map(|drag| drag.at_rest + drag.per_square * most[1]);
-        let of_square = largest(nodes, joint, |terms| &terms.of_square) + rest_b;
-        let of_change = largest(nodes, joint, |terms| &terms.of_change) + rest_a;
-        let hold = largest(nodes, joint, |terms| &terms.hold) + rest_g;
+        let of_square = largest(nodes.map(|terms| terms.of_square[joint])) + rest_b;
+        let of_change = largest(nodes.map(|terms| terms.of_change[joint])) + rest_a;
+        let hold = largest(nodes.map(|terms| terms.hold[joint])) + rest_g;
         let viscous = drags.map(|drag| 2.0 * to * drag.per_square * most[0]);
         let inertial = of_change * most[0] + of_square * (most[1] + 2.0 * to * most[0]);
         if inertial + hold + friction[0].max(friction[1]) + viscous[0].max(viscous[1]) <= limit {
             return;
         }
-        let of = |term: Term| control_points(nodes.map(|terms| term(terms)[joint]));
-        let [a, b, g] = [of(|terms| &terms.of_change), of(|terms| &terms.of_square), of(|terms| &terms.hold)];
+        let a = control_points(nodes.map(|terms| terms.of_change[joint]));
+        let b = control_points(nodes.map(|terms| terms.of_square[joint]));
+        let g = control_points(nodes.map(|terms| terms.hold[joint]));
         // x(s) = x + 2 u s, and s times a parabola is a cubic.
         let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [from, to]));
         for i in 0..4 {
@@ -344,13 +345,10 @@ impl KeptTorque {
     }
 }
 
-/// One of the terms of a torque, by joint.
-type Term = fn(&TorqueTerms) -> &[f64];
-
-/// The largest size of a term over a part of a segment, up to the rest.
-fn largest(nodes: [&TorqueTerms; 3], joint: usize, term: Term) -> f64 {
-    let points = control_points(nodes.map(|terms| term(terms)[joint]));
-    points.into_iter().fold(0.0_f64, |largest, point| largest.max(point.abs()))
+/// The largest size of the parabola with these values at the start, in the middle and at the end.
+fn largest(values: [f64; 3]) -> f64 {
+    let [start, middle, end] = control_points(values).map(f64::abs);
+    start.max(middle).max(end)
 }
 
 /// The Bernstein coefficients of a parabola as those of a cubic.
