@@ -386,6 +386,35 @@ fn milder_stops_end_inside_the_position_limits() {
 }
 
 #[test]
+fn a_stop_with_other_masses_or_from_elsewhere_takes_as_long_as_it_says() {
+    let mut rng = rng::stream(87, 0);
+    let mut moving = 0;
+    for trial in 0..12 {
+        let robot = panda(1.0);
+        let torque = motors(&robot, 0.45);
+        let mut session = session(&robot, 0.002, limits(&robot, [None, Some(50.0)][trial % 2], torque));
+        follow(&mut session, &jumped(&robot, &mut rng), 60 + 5 * trial);
+        if trial < 6 {
+            session.set_robot(&panda([0.0, 3.0, 6.0][trial % 3])).unwrap();
+        } else {
+            let (q, qd) = (session.q().to_vec(), [0.6, -0.8, 0.7, 0.8, -0.6, 0.5, 0.9]);
+            session.reset(&q, Some(&qd), None).unwrap();
+        }
+        let said = (session.stop() / session.dt()).round() as usize;
+        moving += usize::from(said > 0);
+        let mut last = 0;
+        for tick in 1..=said + 100 {
+            session.advance(None, &mut Unattended).unwrap();
+            if session.qd().iter().any(|rate| rate.abs() > 1e-9) {
+                last = tick;
+            }
+        }
+        assert!(last <= said + 1, "trial {trial}: {last} ticks, {said} said");
+    }
+    assert!(moving > 8, "{moving}");
+}
+
+#[test]
 fn a_track_begins_where_the_motors_can_hold_the_arm() {
     let robot = panda(3.0);
     let mut rng = rng::stream(11, 0);
