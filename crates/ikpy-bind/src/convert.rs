@@ -52,8 +52,8 @@ impl<'py> Deref for Numbers<'py> {
 /// Arguments with an entry for each joint. A table with the names of the joints may have them in another order.
 const OF_JOINTS: [&str; 12] = [
     "waypoints_q",
-    "q0",
-    "q1",
+    "start_q",
+    "end_q",
     "q",
     "qd",
     "qdd",
