@@ -77,7 +77,7 @@ def beside_plain_solve(ours: RobotKinematics, home: np.ndarray, poses: list[np.n
             ours.inverse_kinematics(degrees, pose)
         between = time.process_time()
         for _, radians, pose in calls:
-            bik.solve(ours.robot, pose, task=task, start=radians)
+            bik.solve(ours.robot, pose, task=task, start_q=radians)
         spent = between - begin, time.process_time() - between
         least = [min(pair) for pair in zip(least, spent, strict=True)]
     door, plain = (1e6 * seconds / len(calls) for seconds in least)
