@@ -111,13 +111,13 @@ impl TorquePace {
     /// Checks that the joints can hold the arm at `q`, the argument `what`.
     ///
     /// # Errors
-    /// [`Error::Contradiction`] names joint, torque and limit.
+    /// [`Error::Infeasible`] names joint, torque and limit.
     pub fn require_held(&mut self, what: &str, q: &[f64], robot: &Robot) -> Result<()> {
         self.stop.too_heavy(q).map_or(Ok(()), |overload| {
             let needed = overload.in_words("needs", robot);
             let problem =
                 format!("at {what} {needed}: begin elsewhere, lighten the payload, or raise the torque limit");
-            Err(Error::Contradiction { problem: problem.into() })
+            Err(Error::Infeasible { problem: problem.into() })
         })
     }
 
