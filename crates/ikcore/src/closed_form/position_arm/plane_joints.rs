@@ -8,7 +8,6 @@
 use std::cell::Cell;
 
 use super::goal::PositionGoal;
-use super::of_position::PositionArm;
 use super::scan::{MOST, ScanSample};
 use super::turn_pair::TurnPair;
 use crate::closed_form::angle::Angle;
@@ -26,6 +25,11 @@ type Flat = [f64; 2];
 /// Second to fourth joint about parallel axes.
 #[derive(Debug, Clone)]
 pub(super) struct PlaneJoints {
+    /// All joints of the arm, four or five.
+    all: [JointAxis; MOST],
+    count: usize,
+    /// Unit vectors across the last axis, and along it.
+    last_basis: [Vector; 3],
     /// Unit vectors across the axes, and along them.
     basis: [Vector; 3],
     /// Signs of the three axes along the third vector.
@@ -69,16 +73,17 @@ impl PlaneJoints {
         let is_apart = links.iter().all(|link| squared(link).sqrt() > EXACT * size);
         let (shoulder, floor) = (flat(&joints[1].point), 1e-11 * size);
         let straight = towards(&links[1], &links[0]);
-        is_apart.then_some(Self { basis, senses, shoulder, links, straight, floor })
+        let (all, last_basis) = (*joints, across(&joints[count - 1].axis));
+        is_apart.then_some(Self { all, count, last_basis, basis, senses, shoulder, links, straight, floor })
     }
 
     /// Calls `keep` with each local optimum of the orientation at the position of `goal`, of a tip on the last axis, and with other
     /// configurations where limits cut the sums off. A goal on the first axis has none.
-    pub fn visit_optima(&self, arm: &PositionArm, goal: &PositionGoal<'_>, mut keep: impl FnMut(ScanSample)) {
-        let last = (arm.count == MOST).then_some(&goal.last);
-        self.visit_places(arm, goal, &goal.tip, |first, place| {
-            let wanted = goal.wanted.map(|vector| first.back().about(&arm.joints[0].axis, &vector));
-            let pair = TurnPair::of(&self.basis[2], &arm.basis, &wanted);
+    pub fn visit_optima(&self, goal: &PositionGoal<'_>, mut keep: impl FnMut(ScanSample)) {
+        let last = (self.count == MOST).then_some(&goal.last);
+        self.visit_places(goal, &goal.tip, |first, place| {
+            let wanted = goal.wanted.map(|vector| first.back().about(&self.all[0].axis, &vector));
+            let pair = TurnPair::of(&self.basis[2], &self.last_basis, &wanted);
             let mut offer = |[second, third, fourth]: [Angle; 3], sum| {
                 let trace = pair.at(sum);
                 let fifth = last.map_or(Angle::NONE, |last| trace.best(last));
@@ -96,18 +101,18 @@ impl PlaneJoints {
     /// all values are above `most`.
     pub fn visit_best(
         &self,
-        arm: &PositionArm,
         goal: &PositionGoal<'_>,
         fifth: Angle,
         most: f64,
         mut keep: impl FnMut(PlaneBranch, ScanSample),
     ) {
-        let tip = arm.moved(MOST - 1, fifth, &goal.tip);
-        let [x, y, z] = &arm.basis;
+        let JointAxis { axis, point, .. } = &self.all[MOST - 1];
+        let tip = add(point, &fifth.about(axis, &sub(&goal.tip, point)));
+        let [x, y, z] = &self.last_basis;
         let basis = [fifth.about(z, x), fifth.about(z, y), *z];
         let mut side = 0;
-        self.visit_places(arm, goal, &tip, |first, place| {
-            let wanted = goal.wanted.map(|vector| first.back().about(&arm.joints[0].axis, &vector));
+        self.visit_places(goal, &tip, |first, place| {
+            let wanted = goal.wanted.map(|vector| first.back().about(&self.all[0].axis, &vector));
             let pair = TurnPair::of(&self.basis[2], &basis, &wanted);
             let is_reached = Cell::new(false);
             let mut offer = |[second, third, fourth]: [Angle; 3], sum| {
@@ -126,21 +131,15 @@ impl PlaneJoints {
     }
 
     /// Calls `visit` with the turns of the first joint that bring `tip` to the height of the goal, and what is left in the plane.
-    fn visit_places(
-        &self,
-        arm: &PositionArm,
-        goal: &PositionGoal<'_>,
-        tip: &Vector,
-        mut visit: impl FnMut(Angle, &InPlane<'_>),
-    ) {
-        let JointAxis { axis, point, .. } = &arm.joints[0];
+    fn visit_places(&self, goal: &PositionGoal<'_>, tip: &Vector, mut visit: impl FnMut(Angle, &InPlane<'_>)) {
+        let JointAxis { axis, point, .. } = &self.all[0];
         let along = &self.basis[2];
         let away = sub(&goal.position, point);
         let turns_back = subproblem4(along, axis, &away, dot(along, &sub(tip, point)), self.floor);
         if turns_back.free {
             return;
         }
-        let wrist = self.flat(&sub(tip, &arm.joints[3].point));
+        let wrist = self.flat(&sub(tip, &self.all[3].point));
         for back in turns_back.iter().filter(|back| goal.inside[0].holds(back.back())) {
             let seen = self.flat(&add(point, &back.about(axis, &away)));
             visit(back.back(), &InPlane { joints: self, goal, wrist, to: minus(&seen, &self.shoulder) });

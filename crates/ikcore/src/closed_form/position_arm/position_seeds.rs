@@ -138,7 +138,7 @@ impl PositionArm {
     /// Writes the optima of a tip on the last axis.
     fn write_plane_optima(&self, plane: &PlaneJoints, goal: &PositionGoal<'_>, found: &mut SmallVec<[Seed; SEEDS]>) {
         let mut optima = Optima::new();
-        plane.visit_optima(self, goal, |sample| insert_least(&mut optima, (0.0, sample)));
+        plane.visit_optima(goal, |sample| insert_least(&mut optima, (0.0, sample)));
         self.write_seeds(goal, &optima, found);
     }
 
@@ -149,7 +149,7 @@ impl PositionArm {
         let mut least = f64::INFINITY;
         for turn in turns {
             let mut row = [ScanSample::NONE; PLANE_BRANCHES];
-            plane.visit_best(self, goal, Angle::by(turn), least + LEAST_RESERVE, |branch, sample| {
+            plane.visit_best(goal, Angle::by(turn), least + LEAST_RESERVE, |branch, sample| {
                 if sample.value < row[branch].value {
                     row[branch] = sample;
                 }
