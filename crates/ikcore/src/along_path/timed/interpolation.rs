@@ -84,8 +84,9 @@ const FELT: usize = 4;
 /// Maximum number of halvings of an interval: to 1/4096 of its length.
 const HALVINGS: usize = 12;
 
-/// Maximum number of knots added.
+/// Maximum number of knots: this, and more for each row of the path.
 const MOST_KNOTS: usize = 2000;
+const KNOTS_A_ROW: usize = 2;
 
 impl Interpolation<'_> {
     /// Returns the joint path through these waypoints, over the path parameter.
@@ -142,6 +143,7 @@ impl Interpolation<'_> {
     /// None in practice, as for [`path`](Self::path).
     pub(super) fn refined(&self, mut waypoints: JointWaypoints) -> Result<JointWaypoints> {
         let accuracy = self.accuracy;
+        let most = MOST_KNOTS + KNOTS_A_ROW * self.tip_path.positions().len();
         let mut settled = vec![false; waypoints.knots.len() - 1];
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
@@ -157,7 +159,7 @@ impl Interpolation<'_> {
             };
             let intervals = (0..settled.len()).filter(|i| !settled[*i]);
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
-            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
+            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > most {
                 break;
             }
             let finer = self.halved(&waypoints, &coarse, &path, NEAR_ENOUGH * accuracy);
