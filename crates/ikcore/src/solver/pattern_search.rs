@@ -106,3 +106,59 @@ impl<O: Objective + ?Sized> Solver<O> for PatternSearch {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objective::{Bounds, Score};
+    use crate::rng;
+    use crate::solver::{Stop, Unattended, run};
+
+    /// A bowl with a bent valley, whose lowest point is at (0.5, 0.25, ...), counted.
+    struct Valley(usize);
+
+    impl Objective for Valley {
+        fn dimension(&self) -> usize {
+            3
+        }
+
+        fn evaluate(&mut self, x: &[f64]) -> Score {
+            self.0 += 1;
+            let value = (x[0] - 0.5).powi(2) + 4.0 * (x[1] - x[0] * x[0]).powi(2) + (x[2] + 0.3).abs();
+            Score { value, solved: false }
+        }
+    }
+
+    fn lowest(ranges: [(f64, f64); 3], start: [f64; 3], most: usize) -> (Point, f64, Status, usize) {
+        let mut valley = Valley(0);
+        let bounds = Bounds::from_ranges(ranges.into_iter());
+        let stop = Stop { max_evaluations: most, ..Stop::default() };
+        let (mut rng, mut monitor) = (rng::stream(0, 0), Unattended);
+        let objective: &mut dyn Objective = &mut valley;
+        let mut evaluator = Evaluator::new(objective, &bounds, stop, &mut rng, &mut monitor);
+        let status = run(&PatternSearch, &mut evaluator, &start);
+        let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
+        let value = valley.evaluate(&x).value;
+        (x, value, status, evaluations)
+    }
+
+    #[test]
+    fn a_bent_valley_with_a_crease_is_followed_in_few_evaluations() {
+        let (x, value, status, evaluations) = lowest([(-2.0, 2.0); 3], [-1.5, 1.5, 1.0], 2000);
+        assert_eq!(status, Status::Stalled);
+        assert!(value < 0.02, "{value} at {x:?}");
+        assert!(evaluations < 400, "{evaluations}");
+    }
+
+    #[test]
+    fn held_coordinates_stay_and_budgets_are_kept() {
+        let (x, ..) = lowest([(0.2, 0.2), (-2.0, 2.0), (-2.0, 2.0)], [0.2, 1.0, 1.0], 2000);
+        assert_eq!(x[0], 0.2);
+        assert!((x[1] - 0.04).abs() < 0.02, "{x:?}");
+        for most in [1, 2, 7, 30] {
+            let (_, value, status, evaluations) = lowest([(-2.0, 2.0); 3], [-1.5, 1.5, 1.0], most);
+            assert_eq!((status, evaluations), (Status::BudgetSpent, most));
+            assert!(value <= Valley(0).evaluate(&[-1.5, 1.5, 1.0]).value);
+        }
+    }
+}

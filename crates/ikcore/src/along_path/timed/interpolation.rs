@@ -81,8 +81,8 @@ const SWING: f64 = 0.05;
 /// Number of intervals beside a new knot in which the spline changes: in each by about a quarter of what it does in the one before.
 const FELT: usize = 4;
 
-/// Maximum number of halvings of an interval: to 1/4096 of its length.
-const HALVINGS: usize = 12;
+/// Maximum number of times that intervals are halved; near where one is, the spline of others changes, and they may need it later.
+const HALVINGS: usize = 20;
 
 /// Maximum number of knots: this, and more for each row of the path.
 const MOST_KNOTS: usize = 2000;
@@ -154,7 +154,7 @@ impl Interpolation<'_> {
                 let mut swing: f64 = 0.0;
                 let off = deviation.between(ends, SAMPLES, |q| swing = swing.max(self.excess(q)));
                 // A given start may be off the path.
-                let is_off = off > ENOUGH * accuracy && off > ENOUGH * accuracy + deviation.at(ends[0]);
+                let is_off = off > ENOUGH * accuracy && (i > 0 || off > ENOUGH * accuracy + deviation.at(ends[0]));
                 Ok((is_off || swing > SWING * accuracy).then_some(i))
             };
             let intervals = (0..settled.len()).filter(|i| !settled[*i]);
