@@ -62,9 +62,9 @@ pub struct Robot {
     arms: Arc<OnceLock<Vec<Option<TipArm>>>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
-    /// Decided at first use; copies that differ in base and tool share it.
+    /// Closed form of the arm, found at first use; copies that differ in base and tool share it.
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
-    /// Decided at first use; copies that differ in base and tool share it.
+    /// Closed form for positions, found at first use; copies that differ in base and tool share it.
     position_arm: Arc<OnceLock<Option<PositionArm>>>,
     /// Bodies with their masses, or the reason why there are none; found at first use.
     dynamics: OnceLock<Arc<Result<Dynamics>>>,
