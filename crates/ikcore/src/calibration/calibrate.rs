@@ -57,6 +57,7 @@ const SEED: u64 = 46;
 /// [`Error::Contradiction`] if nothing is to be fitted.
 pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &CalibrationOptions) -> Result<Calibration> {
     robot.require_one_tip("calibration")?;
+    robot.require_linear_couplings("a calibration")?;
     let parts = FittedParts::new(&options.fit)?;
     measured.check(robot, qs)?;
     options.suggestion.check(robot)?;

@@ -35,6 +35,8 @@ pub(crate) enum NoClosedForm {
     Sliding,
     /// The base floats.
     Floating,
+    /// A joint follows another one by a polynomial.
+    Curved,
 }
 
 /// Closed form of a chain of three to seven joints.
@@ -70,6 +72,9 @@ impl ClosedFormArm {
         }
         if chain.vector.is_some() {
             return Err(NoClosedForm::Floating);
+        }
+        if !chain.curves.is_empty() {
+            return Err(NoClosedForm::Curved);
         }
         if rank < joints.min(6) {
             return Err(NoClosedForm::Rank(rank));

@@ -63,6 +63,7 @@ impl Linkage {
     /// [`Error::InvalidRobot`] unless the robot has at least three joints, all turning about z in one plane;
     /// [`Error::OutOfRange`] for a target out of that plane.
     pub fn new(robot: &Robot, target: &[f64; 3], measure: Measure, region: Option<Rectangle>) -> Result<Self> {
+        robot.require_linear_couplings("a posture on circles")?;
         let screws = robot.screws(&vec![0.0; robot.dof()]);
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem: problem.into() };
         let height = screws[0].origin[2];

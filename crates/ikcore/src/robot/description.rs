@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
-use crate::kinematics::RotationVector;
+use crate::kinematics::{JointCurve, RotationVector};
 use crate::kinematics::chain::{Chain, ChainFolder, Transmission};
 use crate::math::{MAX_DOF, Pose, pose};
 
@@ -39,6 +39,17 @@ pub enum Element {
     RotationVector {
         /// The first of the three.
         joint: usize,
+    },
+    /// A motion by a polynomial of `q[joint]`.
+    Curved {
+        /// Axis of the motion, of unit length.
+        axis: Vector3<f64>,
+        /// True for a rotation (rad), false for a translation (m).
+        turns: bool,
+        /// The independent joint that drives it.
+        joint: usize,
+        /// The polynomial.
+        curve: JointCurve,
     },
 }
 
@@ -78,7 +89,7 @@ impl Description {
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.elements.iter().filter_map(|element| match element {
             Element::Link(name) => Some(name.as_str()),
-            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } => None,
+            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } | Element::Curved { .. } => None,
         })
     }
 
@@ -90,6 +101,7 @@ impl Description {
                 Element::Fixed(transform) => chain.fixed(transform),
                 Element::Link(_) => chain.link(),
                 Element::RotationVector { joint } => chain.rotation_vector(*joint),
+                Element::Curved { axis, turns, joint, curve } => chain.curved(axis, *joint, *turns, curve),
                 // A follower whose factor is zero stands still.
                 Element::Moving { axis, turns, scale: 0.0, offset, .. } => chain.fixed(&moved(axis, *turns, *offset)),
                 Element::Moving { axis, turns, joint, scale, offset } => {
@@ -123,7 +135,10 @@ impl Description {
         let mut links = HashSet::new();
         self.elements.iter().try_for_each(|element| match element {
             Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
-            _ => element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str())),
+            _ => {
+                element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str()))?;
+                element.drivers().try_for_each(|joint| element.require_bounded(&self.name, &self.joints[joint].name))
+            }
         })
     }
 }
@@ -144,7 +159,7 @@ impl Element {
     pub(super) fn drivers(&self) -> Range<usize> {
         match self {
             Self::Fixed(_) | Self::Link(_) => 0..0,
-            Self::Moving { joint, .. } => *joint..joint + 1,
+            Self::Moving { joint, .. } | Self::Curved { joint, .. } => *joint..joint + 1,
             Self::RotationVector { joint } => *joint..joint + 3,
         }
     }
@@ -170,15 +185,27 @@ impl Element {
             Self::Fixed(_) | Self::Link(_) | Self::Moving { scale: 0.0, .. } => 0,
             Self::Moving { .. } => 1,
             Self::RotationVector { .. } => RotationVector::STAGES,
+            Self::Curved { .. } => 2,
         }
     }
 
     /// Copy of the element in a robot that has `shift` more joints before its own.
     pub(super) fn shifted(mut self, shift: usize) -> Self {
-        if let Self::Moving { joint, .. } | Self::RotationVector { joint } = &mut self {
+        if let Self::Moving { joint, .. } | Self::Curved { joint, .. } | Self::RotationVector { joint } = &mut self {
             *joint += shift;
         }
         self
+    }
+
+    /// Err for a coupling by a polynomial that is not bounded; `driver` is the joint that leads.
+    pub(super) fn require_bounded(&self, robot: &str, driver: &str) -> Result<()> {
+        let Self::Curved { curve, .. } = self else { return Ok(()) };
+        let [slope, bend] = curve.largest();
+        if curve.range[0] <= curve.range[1] && slope.is_finite() && bend < f64::from(f32::MAX) {
+            return Ok(());
+        }
+        let problem = format!("a joint follows joint '{driver}' by a polynomial: give '{driver}' position limits");
+        Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })
     }
 
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
@@ -191,6 +218,15 @@ impl Element {
                 Some(_) => Ok(()),
                 None => Err(invalid(format!("joints {joint} to {} of a rotation vector do not exist", joint + 2))),
             },
+            Self::Curved { axis, turns, joint, curve } => {
+                let Some(driver) = driver(*joint) else {
+                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+                };
+                let of_driver = |_| format!("joint '{driver}'");
+                require_finite("coefficients of a polynomial coupling", &curve.coefficients, of_driver)?;
+                let of_axis = Self::Moving { axis: *axis, turns: *turns, joint: *joint, scale: 1.0, offset: 0.0 };
+                of_axis.validate(robot, |_| Some(driver))
+            }
             Self::Moving { axis, joint, scale, offset, .. } => {
                 let Some(driver) = driver(*joint) else {
                     return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));

@@ -63,6 +63,7 @@ pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
+pub use crate::kinematics::JointCurve;
 pub use joint::{Joint, JointKind};
 pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};

@@ -48,6 +48,7 @@ impl OffChain {
                     Element::Fixed(transform) => tree.fixed(&transform),
                     // A rotation vector stands at the start of the chain alone.
                     Element::Link(_) | Element::RotationVector { .. } => {}
+                    Element::Curved { axis, turns, joint, curve } => tree.curved(&axis, joint, turns, &curve),
                     Element::Moving { axis, turns, joint, scale, offset } => {
                         let motion = if turns { Transmission::turn } else { Transmission::slide };
                         tree.moving(&axis, motion(joint, scale, offset));
@@ -65,6 +66,11 @@ impl OffChain {
             && let Some(held) = self.held.get(joint.wrapping_sub(dof))
         {
             return Element::Fixed(moved(axis, *turns, scale * held.value + offset));
+        }
+        if let Element::Curved { axis, turns, joint, curve } = element
+            && let Some(held) = self.held.get(joint.wrapping_sub(dof))
+        {
+            return Element::Fixed(moved(axis, *turns, curve.at(held.value)[0]));
         }
         element.clone()
     }
@@ -89,7 +95,11 @@ impl OffChain {
                 return Err(invalid(format!("link '{}' comes before its parent", link.name)));
             }
             let elements = &mut link.elements.iter();
-            elements.try_for_each(|element| element.validate(&description.name, |joint| joints.get(joint).copied()))?;
+            elements.try_for_each(|element| {
+                element.validate(&description.name, |joint| joints.get(joint).copied())?;
+                let mut leaders = element.drivers().filter(|joint| *joint < description.joints.len());
+                leaders.try_for_each(|joint| element.require_bounded(&description.name, joints[joint]))
+            })?;
         }
         self.held.iter().try_for_each(|held| {
             require_finite("held joints", &[held.value], |_| format!("joint '{}'", held.joint.name))

@@ -145,6 +145,17 @@ impl Goal {
                 let problem = "the goals Manipulability and LinkManipulability are not for robots on a floating base";
                 Err(Error::Contradiction { problem: problem.into() })
             }
+            // So does that of the torques, and both assume axes of constant length.
+            Self::Manipulability { .. } | Self::LinkManipulability { .. } | Self::LeastTorque { .. }
+                if robot.curve_leader().is_some() =>
+            {
+                let goal = match self {
+                    Self::Manipulability { .. } => "the goal Manipulability",
+                    Self::LinkManipulability { .. } => "the goal LinkManipulability",
+                    _ => "the goal LeastTorque",
+                };
+                robot.require_linear_couplings(goal)
+            }
             Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
             Self::Manipulability { tip: None, .. } => {
                 robot.require_one_tip(message!["the goal Manipulability without ", Setting::Tip])

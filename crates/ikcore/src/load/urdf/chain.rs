@@ -4,12 +4,12 @@
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Document, UrdfKind};
-use super::mimic::{self, Coupling, Couplings};
+use super::mimic::{self, Coupling, Couplings, MimicDrive};
 use super::off_chain::{self, MimicFollower};
 use super::step;
 use super::tree::{Tree, TreeStep};
 use crate::error::{Error, Result};
-use crate::robot::{ChainBuilder, Masses, Robot, require_supported};
+use crate::robot::{ChainBuilder, InertiaFault, Masses, Robot, require_supported};
 
 /// Builds the robot whose chain leads from link `base` to the first of `tips`. All other links become branches; branches to
 /// further tips keep their joints.
@@ -44,23 +44,40 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
         chain.link(step::far_link(document, *at));
     }
     let robot = chain.build()?;
+    let mut faults = document.faults.clone();
+    for &joint in &moving {
+        let coupling = couplings.of(joint)?;
+        faults.extend(mimic::curved_load(&step::described(document, joint)?, coupling.drive, &joints[coupling.master].name));
+    }
     let (off_chain, followers) = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
     let robot = robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())?;
-    with_masses(document, robot, &followers)
+    for MimicFollower { joint, master, drive } in &followers {
+        faults.extend(mimic::curved_load(joint, *drive, &robot.joints()[*master].name));
+    }
+    with_masses(document, robot, &followers, faults)
 }
 
 /// Adds masses, and the friction of mimic joints beside the chain.
-fn with_masses(document: &Document, robot: Robot, followers: &[MimicFollower]) -> Result<Robot> {
+fn with_masses(
+    document: &Document,
+    robot: Robot,
+    followers: &[MimicFollower],
+    faults: Vec<InertiaFault>,
+) -> Result<Robot> {
     let followers_of = |master: usize| followers.iter().filter(move |follower| follower.master == master);
     let robot = match followers {
         [] => robot,
         _ => robot.with_limits(|index, joint| {
-            followers_of(index).for_each(|follower| mimic::reflect(joint, &follower.joint, follower.scale));
+            for follower in followers_of(index) {
+                if let MimicDrive::Linear(drive) = follower.drive {
+                    mimic::reflect(joint, &follower.joint, drive.scale);
+                }
+            }
         })?,
     };
     let links: HashSet<&str> = robot.all_link_names().collect();
     let inertias = document.inertias.iter().filter(|known| links.contains(known.link.as_str()));
-    let masses = Masses { links: inertias.cloned().collect(), faults: document.faults.clone(), ..Masses::default() };
+    let masses = Masses { links: inertias.cloned().collect(), faults, ..Masses::default() };
     Ok(robot.with_masses(masses))
 }
 
