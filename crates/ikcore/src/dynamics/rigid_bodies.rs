@@ -2,8 +2,8 @@
 
 use super::inertia::Inertia;
 use super::mass_moments::MassMoments;
-use crate::kinematics::{CurvedStage, RotationVector};
 use crate::kinematics::chain::Transmission;
+use crate::kinematics::{CurvedStage, RotationVector};
 use crate::math::so3::norm;
 
 /// Friction and rotor of a joint, with those of its followers reflected.

@@ -38,8 +38,7 @@ pub(crate) enum StageAxis {
 
 impl Transmission {
     /// Moves nothing.
-    pub(super) const NONE: Self =
-        Self {
+    pub(super) const NONE: Self = Self {
         joint: 0,
         turn_scale: 0.0,
         turn_offset: 0.0,

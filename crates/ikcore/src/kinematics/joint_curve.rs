@@ -6,10 +6,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::polynomial;
 use crate::math::so3::cross;
-use crate::math::Frame;
 
 /// Highest degree of a coupling, that of MuJoCo.
 const DEGREE: usize = 4;
@@ -42,7 +42,9 @@ impl JointCurve {
         let bend = polynomial::derivative(&slope);
         // Rounding is relative to the terms, which may cancel.
         let size = |terms: &[f64]| polynomial::bound(terms, lower.abs().max(upper.abs()));
-        [&slope, &bend].map(|terms| polynomial::largest_magnitude(terms, lower, upper) + ROUNDING * size(terms))
+        let largest = |terms: &[f64]| polynomial::largest_magnitude(terms, lower, upper) + ROUNDING * size(terms);
+        // Slopes are divided by the largest one, also that of a constant.
+        [largest(&slope).max(f64::MIN_POSITIVE), largest(&bend)]
     }
 
     /// Returns the smallest and the largest value between `lower` and `upper`.

@@ -105,8 +105,8 @@ mod tests {
     /// An arm of three joints, and of two that follow the second one by polynomials, of which one slides.
     fn bent_arm() -> Robot {
         let mut arm = ChainBuilder::new("bent", "base");
-        let joints = ["a", "b", "c"]
-            .map(|name| arm.add_joint(Joint::new(name, JointKind::Revolute).with_range(-1.5, 1.5)));
+        let joints =
+            ["a", "b", "c"].map(|name| arm.add_joint(Joint::new(name, JointKind::Revolute).with_range(-1.5, 1.5)));
         let curved = |axis, turns, coefficients| Element::Curved {
             axis,
             turns,

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
-use crate::kinematics::{JointCurve, RotationVector};
 use crate::kinematics::chain::{Chain, ChainFolder, Transmission};
+use crate::kinematics::{JointCurve, RotationVector};
 use crate::math::{MAX_DOF, Pose, pose};
 
 /// Squares of longer lengths (m) are not finite.
@@ -89,7 +89,9 @@ impl Description {
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.elements.iter().filter_map(|element| match element {
             Element::Link(name) => Some(name.as_str()),
-            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } | Element::Curved { .. } => None,
+            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } | Element::Curved { .. } => {
+                None
+            }
         })
     }
 
@@ -200,9 +202,12 @@ impl Element {
     /// Err for a coupling by a polynomial that is not bounded; `driver` is the joint that leads.
     pub(super) fn require_bounded(&self, robot: &str, driver: &str) -> Result<()> {
         let Self::Curved { curve, .. } = self else { return Ok(()) };
-        let [slope, bend] = curve.largest();
-        if curve.range[0] <= curve.range[1] && slope.is_finite() && bend < f64::from(f32::MAX) {
-            return Ok(());
+        let [lower, upper] = curve.range;
+        if lower.is_finite() && upper.is_finite() && lower <= upper {
+            let [slope, bend] = curve.largest();
+            if slope.is_finite() && bend < f64::from(f32::MAX) {
+                return Ok(());
+            }
         }
         let problem = format!("a joint follows joint '{driver}' by a polynomial: give '{driver}' position limits");
         Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })

@@ -57,13 +57,13 @@ mod upright_axis;
 mod visual;
 mod wrapped;
 
+pub use crate::kinematics::JointCurve;
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};
 pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
-pub use crate::kinematics::JointCurve;
 pub use joint::{Joint, JointKind};
 pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};

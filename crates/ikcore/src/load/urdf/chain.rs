@@ -47,7 +47,11 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
     let mut faults = document.faults.clone();
     for &joint in &moving {
         let coupling = couplings.of(joint)?;
-        faults.extend(mimic::curved_load(&step::described(document, joint)?, coupling.drive, &joints[coupling.master].name));
+        faults.extend(mimic::curved_load(
+            &step::described(document, joint)?,
+            coupling.drive,
+            &joints[coupling.master].name,
+        ));
     }
     let (off_chain, followers) = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
     let robot = robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())?;

@@ -63,15 +63,19 @@ impl<'a> Couplings<'a> {
     }
 
     /// Err for a joint that follows another one by a polynomial, which follows a third one by a polynomial.
-    fn require_one_polynomial(&self, joint: usize) -> Result<()> {
+    pub(super) fn require_one_polynomial(&self, joint: usize) -> Result<()> {
         let (document, mut at, mut curved) = (self.document, joint, None);
-        while let Some(mimic) = &document.joints[at].mimic {
+        // Joints beside the chain may follow in a circle.
+        for _ in 0..document.joints.len() {
+            let Some(mimic) = &document.joints[at].mimic else { return Ok(()) };
             let Some(next) = document.joint_number(&mimic.joint) else { return Ok(()) };
             if mimic.polynomial.is_some()
                 && let Some(first) = curved.replace(at)
             {
                 let [outer, inner]: [&str; 2] = [first, at].map(|number: usize| document.joints[number].name.as_str());
-                let problem = format!("joint '{outer}' follows joint '{inner}' by a polynomial, which follows another one by a polynomial: at most one of both is followed");
+                let problem = format!(
+                    "joint '{outer}' follows joint '{inner}' by a polynomial, which follows another one by a polynomial: at most one of both is followed"
+                );
                 return Err(document.error_at(joint, problem));
             }
             at = next;
@@ -204,6 +208,9 @@ pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: MimicDrive) ->
 
 /// [`narrow`] for a follower by a polynomial, whose position limits its master has to keep already.
 fn narrow_by_curve(master: &mut Joint, follower: &Joint, curve: &JointCurve) -> Result<(), String> {
+    if curve.range.iter().any(|end| end.is_infinite()) {
+        return Ok(()); // the robot is refused when it is complete
+    }
     let (least, most) = curve.values(master.lower, master.upper);
     let rounding = 1e-9 * (1.0 + least.abs().max(most.abs()));
     if least < follower.lower - rounding || most > follower.upper + rounding {

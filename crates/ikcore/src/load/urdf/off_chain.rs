@@ -35,6 +35,7 @@ pub(super) fn of(
         let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
             true => {
+                couplings.require_one_polynomial(at.joint)?;
                 let coupling = couplings.of_off_chain(at.joint);
                 let joint = match drivers.get(&coupling.master) {
                     Some(known) => *known,

@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 
 use super::document::{Document, UrdfKind};
 use super::inertial::JointLoad;
+use super::mimic::MimicDrive;
 use super::tree::TreeStep;
 use crate::error::Result;
 use crate::math::{Pose, pose};
-use super::mimic::MimicDrive;
 use crate::robot::{Element, Joint, JointKind};
 
 /// Motion of a joint: the robot joint that drives it, its kind and its drive.
