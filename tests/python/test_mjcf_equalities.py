@@ -113,14 +113,26 @@ FOLLOWED: dict[str, tuple[str, str, dict[str, Any]]] = {
         "abcd",
         {"e": lambda q: 0.1 + 0.5 * (q["b"] - 0.3) + 0.2 * (q["b"] - 0.3) ** 2},
     ),
-    "a cubic without a linear term": (arm(joint("d", "0 0 0 .2 0", "c")), "abce", {"d": lambda q: -0.2 + 0.2 * q["c"] ** 3}),
+    "a cubic without a linear term": (
+        arm(joint("d", "0 0 0 .2 0", "c")),
+        "abce",
+        {"d": lambda q: -0.2 + 0.2 * q["c"] ** 3},
+    ),
     "a quartic that turns back": (
         arm(joint("d", "0 .5 -.4 0 .1", "c")),
         "abce",
         {"d": lambda q: -0.2 + 0.5 * q["c"] - 0.4 * q["c"] ** 2 + 0.1 * q["c"] ** 4},
     ),
-    "a bend of a leader farther out": (arm(joint("b", "0 .5 .2 0 0", "d")), "acde", {"b": lambda q: 0.3 + 0.5 * (q["d"] + 0.2) + 0.2 * (q["d"] + 0.2) ** 2}),
-    "a bend beside the chain": (arm(joint("f", "0 .3 .1 0 0", "c")), "abcde", {"f": lambda q: 0.3 * q["c"] + 0.1 * q["c"] ** 2}),
+    "a bend of a leader farther out": (
+        arm(joint("b", "0 .5 .2 0 0", "d")),
+        "acde",
+        {"b": lambda q: 0.3 + 0.5 * (q["d"] + 0.2) + 0.2 * (q["d"] + 0.2) ** 2},
+    ),
+    "a bend beside the chain": (
+        arm(joint("f", "0 .3 .1 0 0", "c")),
+        "abcde",
+        {"f": lambda q: 0.3 * q["c"] + 0.1 * q["c"] ** 2},
+    ),
     "a line along a bend": (
         arm(joint("d", "0 .5 .2 0 0", "c") + joint("e", "0 .5 0 0 0", "d")),
         "abc",
@@ -166,8 +178,8 @@ def test_followed_equalities_put_the_tip_where_mujoco_does(name: str) -> None:
 
 
 SIDE = (
-    "which is not followed (locks and couplings of two joints are, where they agree): choose base and tip on one side of it, "
-    "or set active='false' if the motion of the tip does not depend on it"
+    "which is not followed (locks and couplings of two joints are, where they agree): choose base and tip on one side "
+    "of it, or set active='false' if the motion of the tip does not depend on it"
 )
 REFUSED = {
     "two locks": (
@@ -356,9 +368,7 @@ def test_torques_of_bent_joints_are_those_of_mujoco(coefficients: str) -> None:
         data.qpos, data.qvel, data.qacc = positions, to_all @ qd, to_all @ qdd + bias
         model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
         mujoco.mj_inverse(model, data)
-        np.testing.assert_allclose(
-            robot.inverse_dynamics(q, qd, qdd), to_all.T @ data.qfrc_inverse, rtol=0, atol=1e-9
-        )
+        np.testing.assert_allclose(robot.inverse_dynamics(q, qd, qdd), to_all.T @ data.qfrc_inverse, rtol=0, atol=1e-9)
         mass = np.zeros((7, 7))
         mujoco.mj_fullM(model, mass, data.qM)
         np.testing.assert_allclose(robot.mass_matrix(q), to_all.T @ mass @ to_all, rtol=0, atol=1e-9)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -98,8 +99,8 @@ class Equalities:
                 within = self._within(follower, lower, upper)
                 if within is None:
                     raise InvalidInputError(
-                        f"MuJoCo model: joint '{self.joints[follower]}' follows '{self.joints[joint]}' by a polynomial, "
-                        f"and leaves its range wherever '{self.joints[joint]}' is inside its own"
+                        f"MuJoCo model: joint '{self.joints[follower]}' follows '{self.joints[joint]}' by a "
+                        f"polynomial, and leaves its range wherever '{self.joints[joint]}' is inside its own"
                     )
                 lower, upper = within
         return (lower, upper) if np.isfinite(lower) or np.isfinite(upper) else None
@@ -113,7 +114,7 @@ class Equalities:
         real = np.real(crossings[np.abs(np.imag(crossings)) < _ROUNDING * (1.0 + np.abs(crossings))])
         ends = [lower, *sorted(float(at) for at in real if lower < at < upper), upper]
         stretches: list[tuple[float, float]] = []
-        for start, end in zip(ends, ends[1:], strict=False):
+        for start, end in pairwise(ends):
             middle = start + 1.0 if end == np.inf else end - 1.0 if start == -np.inf else 0.5 * (start + end)
             if not limits[0] - _ROUNDING <= polynomial(middle) <= limits[1] + _ROUNDING:
                 continue
