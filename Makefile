@@ -18,7 +18,7 @@ help:  ## list the targets
 # The limit is that of the BAS paper. It exceeds the limits of the real arm in four joints; the command says so.
 demo: $(VENV)/with-cli,plot  ## a KUKA iiwa 14 follows the BAS paper's circle; results in demo/
 	$(BIN)/beetle-ik track iiwa14 --curve circle --center 0.3,0.3,1.0 --diameter 0.2 --duration 30 --dt 0.2 \
-	    --start 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
+	    --start-q 0.6449,0.2037,0.1969,-0.7714,0.2028,0.7179,0.1 --velocity-sinusoid 2,0.004,1 --solver bas --out demo
 
 # Two jobs at a time: compiling keeps one core busy for long. Each line prints its output when it ends.
 test:  ## all checks and tests, of Rust and of Python

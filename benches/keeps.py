@@ -120,7 +120,7 @@ def hand(robot: bik.Robot, side: float, tilt: float, wall: Any, rng: np.random.G
     target = lean @ bik.pose(rpy=[np.pi, 0.0, rng.uniform(-np.pi, np.pi)])
     target[:3, 3] = place
     found = bik.solve(
-        robot, target, start=robot.random_configurations(1, int(rng.integers(2**31)))[0], obstacles=[wall]
+        robot, target, start_q=robot.random_configurations(1, int(rng.integers(2**31)))[0], obstacles=[wall]
     )
     return found.q if found.success else None
 

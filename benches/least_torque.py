@@ -54,7 +54,7 @@ def held(robot: bik.Robot, q: np.ndarray, options: dict[str, object]) -> list[fl
     """Largest share of a torque limit, length of the torques, time (ms)."""
     target = robot.fk(q)
     begun = time.perf_counter()
-    solution = bik.solve(robot, target, start=q, **options)
+    solution = bik.solve(robot, target, start_q=q, **options)
     spent = 1e3 * (time.perf_counter() - begun)
     assert solution.success
     torques = robot.torques(solution.q)

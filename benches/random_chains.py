@@ -109,7 +109,7 @@ def descended(robot: bik.Robot, pose: np.ndarray, count: int, random: np.random.
     ended = bik.solve_batch(
         robot,
         np.repeat(pose[None], count, axis=0),
-        starts=starts,
+        start_q=starts,
         solver=bik.LevenbergMarquardt(),
         position_tolerance=DESCENDED,
         rotation_tolerance=DESCENDED,

@@ -116,7 +116,7 @@ def hands_within(
         }
         start = robot.random_configurations(1, seed=int(random.integers(2**31)))[0]
         stop = bik.Stop(max_evaluations=4000)
-        solution = bik.solve(robot, targets, start=start, obstacles=scene, margin=4 * MARGIN, stop=stop)
+        solution = bik.solve(robot, targets, start_q=start, obstacles=scene, margin=4 * MARGIN, stop=stop)
         if solution.success:
             return solution.q
     return None

@@ -26,7 +26,7 @@ print(np.allclose(robot.fk(solution.q), target, atol=2e-6))
 # ``prefer="nearest"`` returns the solution with the smallest joint motion from a
 # start.
 ready = np.array([0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8])
-nearest = bik.solve(robot, target, start=ready, prefer="nearest")
+nearest = bik.solve(robot, target, start_q=ready, prefer="nearest")
 print(
     f"joint motion: {np.linalg.norm(nearest.q - ready):.2f} rad, "
     f"any solution: {np.linalg.norm(solution.q - ready):.2f}"

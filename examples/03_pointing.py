@@ -20,7 +20,10 @@ circle = bik.paths.circle((0.45, 0.1, 0.25), diameter=0.2, duration=8.0)
 down = bik.pose([0, 0, 0], rpy=[np.pi, 0, 0])[:3, :3]
 path = circle.with_orientation(down)
 start = bik.solve(
-    robot, path.pose(0.0), start=[0.0, -1.2, 1.8, -2.2, -1.5, 0.0], prefer="nearest"
+    robot,
+    path.pose(0.0),
+    start_q=[0.0, -1.2, 1.8, -2.2, -1.5, 0.0],
+    prefer="nearest",
 ).q
 
 # %%

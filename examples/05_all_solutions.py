@@ -15,7 +15,7 @@ import beetle_ik as bik
 robot = bik.Robot.named("ur5e")
 target = bik.pose([0.4, 0.2, 0.3], rpy=[np.pi, 0.0, 0.5])
 start = np.array([0.8, -1.5, -1.5, -1.6, 1.6, -1.3])
-solutions = bik.solve_all(robot, target, start=start)
+solutions = bik.solve_all(robot, target, start_q=start)
 print(robot.closed_form)
 print(solutions.message)
 for solution in solutions:

@@ -24,7 +24,7 @@ to_first = bik.state_to_state(home, first, limits, joint_names=robot.joint_names
 change = 0.4
 q, qd, qdd = to_first.at(change)
 to_second = bik.state_to_state(
-    q, second, limits, qd0=qd, qdd0=qdd, joint_names=robot.joint_names
+    q, second, limits, start_qd=qd, start_qdd=qdd, joint_names=robot.joint_names
 )
 print(
     f"{to_first.duration:.3f} s to the first target, "

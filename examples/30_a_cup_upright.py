@@ -15,7 +15,7 @@ import beetle_ik as bik
 
 robot = bik.Robot.named("panda").with_capsules(radius=0.06)
 down = bik.pose([0.5, -0.4, 0.35], rpy=[np.pi, 0.0, 0.0])
-start = bik.solve(robot, down, start=[-0.7, 0.2, 0.0, -2.2, 0.0, 2.4, 0.0]).q
+start = bik.solve(robot, down, start_q=[-0.7, 0.2, 0.0, -2.2, 0.0, 2.4, 0.0]).q
 end = start * [-1, 1, 1, 1, 1, 1, 1]
 wall = bik.obstacles.Box(center=(0.55, 0.0, 0.25), size=(0.5, 0.06, 0.5))
 limits = bik.Limits(acceleration=5.0)

@@ -79,7 +79,7 @@ for distance in distances:
     targets = {"left_foot": foot, "hand": place, "head": looking_at(place)}
     flat = {tip: type(task)() for tip, task in in_order.items()}
     for name, task in (("levels", in_order), ("one level", flat)):
-        found = bik.solve(robot, targets, task=task, start=standing)
+        found = bik.solve(robot, targets, task=task, start_q=standing)
         off = found.errors
         errors[name].append([max(off["left_foot"]), off["hand"][0]])
         if name == "levels":

@@ -37,7 +37,7 @@ def values() -> dict[str, object]:
         "sphere": sphere,
         "box": bik.obstacles.Box([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]),
         "task": bik.tasks.Position(tolerance=[1e-4, 1e-4, 1e-3]),
-        "solution": bik.solve(robot, target, start=start, solver=bik.LevenbergMarquardt()),
+        "solution": bik.solve(robot, target, start_q=start, solver=bik.LevenbergMarquardt()),
         "solutions": bik.solve_all(
             bik.Robot.named("ur5e"), bik.Robot.named("ur5e").fk([0.1, -1.0, 1.2, 0.3, 0.5, 0.7])
         ),

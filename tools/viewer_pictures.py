@@ -206,6 +206,15 @@ def played(browser: Any, file: Path) -> None:
         visitor.picture(file)
 
 
+def loaded(browser: Any, file: Path) -> None:
+    """Pictures the loads of the motors of an arm that holds 3 kg far out."""
+    robot = bik.Robot.named("panda").with_payload(3.0)
+    with bik.view(robot, [0.0, 0.9, 0.0, -1.1, 0.0, 2.0, 0.8], port=0) as viewer:
+        visitor = Visitor(browser, viewer, width=_WIDTH, height=_HEIGHT)
+        visitor.open_tab("Joints")
+        visitor.picture(file)
+
+
 def mapped(browser: Any, file: Path) -> None:
     """Pictures a slice of a reachability map."""
     robot = bik.Robot.named("ur5e")
@@ -231,7 +240,7 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     out: Path = parser.parse_args().out
     with visits() as browser:
-        for draw in (dragged, solved, played, mapped, paired):
+        for draw in (dragged, solved, played, loaded, mapped, paired):
             draw(browser, out / f"viewer_{draw.__name__}.png")
 
 

@@ -114,7 +114,7 @@ def descents(robot: Any, chain: Chain, targets: np.ndarray, count: int) -> Itera
         ended = beetle_ik.solve_batch(
             robot,
             np.repeat(some, count, axis=0),
-            starts=starts,
+            start_q=starts,
             solver=beetle_ik.LevenbergMarquardt(),
             position_tolerance=1e-9,
             rotation_tolerance=1e-9,

@@ -99,7 +99,7 @@ class PositionFirst(Adapter):
         self._robot = bik.Robot.from_urdf(chain.urdf, tip=chain.tip)
 
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray | None:
-        return bik.solve(self._robot, target, start=start).q
+        return bik.solve(self._robot, target, start_q=start).q
 
 
 class WeightedClik(Adapter):

@@ -29,7 +29,7 @@ def jumps(chain: Chain, count: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         away = random.standard_normal(3)
         goal = chain.pose(start)
         goal[:3, 3] += JUMP * away / np.linalg.norm(away)
-        there = beetle_ik.solve(robot, goal, start=start, prefer="nearest")
+        there = beetle_ik.solve(robot, goal, start_q=start, prefer="nearest")
         inside = np.abs(there.q - middle) < 0.9 * half
         near = np.abs(there.q - start) < 0.7
         regular = min(robot.manipulability(start), robot.manipulability(there.q)) > 0.03

@@ -43,7 +43,7 @@ class BeetleIk(Adapter):
 
 class BeetleIkFromStart(BeetleIk):
     name = "beetle-ik, start given"
-    settings = "defaults, start= the random start that the other libraries get"
+    settings = "defaults, start_q= the random start that the other libraries get"
     solve_all = Adapter.solve_all  # as above
     fk = Adapter.fk
     fk_and_jacobian = Adapter.fk_and_jacobian
@@ -51,11 +51,11 @@ class BeetleIkFromStart(BeetleIk):
     def solve_pose(self, target: np.ndarray, start: np.ndarray) -> np.ndarray:
         tolerance = self._tolerance
         return self._solve(
-            self.robot, target, start=start, position_tolerance=tolerance, rotation_tolerance=tolerance
+            self.robot, target, start_q=start, position_tolerance=tolerance, rotation_tolerance=tolerance
         ).q
 
     def solve_position(self, point: np.ndarray, start: np.ndarray) -> np.ndarray:
-        return self._solve(self.robot, point, start=start, position_tolerance=self._tolerance).q
+        return self._solve(self.robot, point, start_q=start, position_tolerance=self._tolerance).q
 
 
 class RoboticsToolbox(Adapter):

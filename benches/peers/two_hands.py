@@ -162,13 +162,13 @@ class BeetleIk(Library):
 
 class FromStart(BeetleIk):
     name = "beetle-ik, one descent"
-    settings = "solve(robot, {tip: pose}, start=middle, solver=LevenbergMarquardt()): no restarts"
+    settings = "solve(robot, {tip: pose}, start_q=middle, solver=LevenbergMarquardt()): no restarts"
 
     def __init__(self, rig: TwoHands, start: np.ndarray) -> None:
         super().__init__(rig, start)
         own = np.empty(len(start))
         own[self._order] = start
-        self._options = {"start": own, "solver": bik.LevenbergMarquardt()}
+        self._options = {"start_q": own, "solver": bik.LevenbergMarquardt()}
 
 
 class OneAfterTheOther(Library):

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
+from viser.transforms import SO3
 
 import beetle_ik as bik
 
@@ -137,6 +138,67 @@ def tray() -> Iterator[Recorded]:
 
 
 @contextmanager
+def cup_upright() -> Iterator[Recorded]:
+    """Yields a cup that is carried past a wall, upright within ten degrees."""
+    left = variables("30_a_cup_upright")
+    robot, motion, wall = left["robot"], left["plan"].trajectory, left["wall"]
+    with viewed(robot, motion.q[0], camera=(1.5, -0.55, 0.95), at=(0.35, 0.0, 0.35), obstacles=[wall]) as viewer:
+        viewer.follow = "off"
+        cup = viewer.server.scene.add_cylinder("/cup", radius=0.035, height=0.1, color=(242, 177, 52))
+
+        def frames() -> Iterator[float]:
+            for time in np.arange(0.0, motion.duration + 1.0, TICK):
+                viewer.q = motion.at(time)[0]
+                hand = robot.fk(viewer.q)
+                cup.position = hand[:3, 3] + 0.06 * hand[:3, 2]
+                cup.wxyz = SO3.from_matrix(hand[:3, :3]).wxyz
+                yield TICK
+
+        yield Recorded(viewer, frames())
+
+
+@contextmanager
+def place_first() -> Iterator[Recorded]:
+    """Yields an arm with five joints at a row of poses, of which it meets the places alone."""
+    left = variables("31_place_first")
+    robot, asked, found = left["robot"], left["asked"], left["found"].q
+    with viewed(robot, found[0], camera=(0.62, -0.42, 0.42), at=(0.14, 0.04, 0.12)) as viewer:
+        viewer.follow = "off"
+        wanted = viewer.server.scene.add_frame("/asked", axes_length=0.06, axes_radius=0.002)
+
+        def frames() -> Iterator[float]:
+            for k in (*range(len(found)), *reversed(range(len(found)))):
+                viewer.q = found[k]
+                wanted.position = asked[k][:3, 3]
+                wanted.wxyz = SO3.from_matrix(asked[k][:3, :3]).wxyz
+                yield 4 * TICK
+
+        yield Recorded(viewer, frames())
+
+
+@contextmanager
+def base_that_stays() -> Iterator[Recorded]:
+    """Yields a mobile arm whose heavy base drives only where the arm cannot reach."""
+    left = variables("47_base_that_stays")
+    robot, targets, heavy = left["robot"], left["targets"], left["heavy"]
+    with viewed(robot, heavy[0], camera=(1.9, -2.3, 1.5), at=(0.9, 0.0, 0.4)) as viewer:
+        viewer.follow = "off"
+        viewer.server.scene.add_line_segments(
+            "/path",
+            points=np.stack((targets[:-1, :3, 3], targets[1:, :3, 3]), axis=1),
+            colors=(242, 177, 52),
+            line_width=3.0,
+        )
+
+        def frames() -> Iterator[float]:
+            for q in heavy[::2]:
+                viewer.q = q
+                yield 2 * TICK
+
+        yield Recorded(viewer, frames())
+
+
+@contextmanager
 def past_a_shelf() -> Iterator[Recorded]:
     """Yields a plan from one compartment of a shelf to another."""
     robot = bik.Robot.named("panda").with_capsules(radius=0.05)
@@ -206,6 +268,9 @@ SCENES: dict[str, Callable[[], AbstractContextManager[Recorded]]] = {
     "11_pick_and_place": pick_and_place,
     "21_tray_in_two_hands": tray,
     "23_reachability_map": reach,
+    "30_a_cup_upright": cup_upright,
+    "31_place_first": place_first,
+    "47_base_that_stays": base_that_stays,
 }
 NAMES = (*SCENES, *OF_EXAMPLES)
 

@@ -964,7 +964,7 @@ class BroydenBAS:
         """Delay of the sensor, in measurements."""
     def session(
         self,
-        start: ArrayLike,
+        start_q: ArrayLike,
         *,
         dt: float,
         limits: Limits | None = None,
@@ -972,7 +972,7 @@ class BroydenBAS:
         rotation_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
-        """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
+        """Starts a `ControlSession` at `start_q` (n,) and t = 0, for your own loop."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -1757,7 +1757,7 @@ def solve(
     target: _Targets,
     *,
     task: _Tasks = None,
-    start: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     solver: _Solver | None = None,
     position_tolerance: _Tolerance = 1e-6,
     rotation_tolerance: _Tolerance = 1e-6,
@@ -1781,7 +1781,7 @@ def solve(
             of the centre of all masses.
         task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
             not all can be met; None: all of it.
-        start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
+        start_q: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
             For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
             search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
             solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
@@ -1793,17 +1793,17 @@ def solve(
         goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
         prefer: solution to return.
             "any": the first solution found.
-            "nearest": of the solutions found, the one with the smallest |q - start| (rad, m). Each is moved along its
+            "nearest": of the solutions found, the one with the smallest |q - start_q| (rad, m). Each is moved along its
             self-motion and by whole turns towards the start; the search ends when 24 in a row are no nearer.
             "best": of the solutions found, the best one for the goals. Each is optimised along its self-motion; the
             search
             ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
             traced once instead, including the parts beyond joint limits.
-        joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
-            (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+        joint_weights: cost of moving each joint away from `start_q` (n,), positive; of the solutions, the one with the least sum of
+            (weight * (q - start_q))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
             it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
             its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
-            1e8. It needs a start, and takes no goals. None: all joints cost the same.
+            1e8. It needs start_q, and takes no goals. None: all joints cost the same.
         limits: position limits; None: the robot's.
         obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
             links alone. None: nothing is checked.
@@ -1887,7 +1887,7 @@ def solve_all(
     robot: Robot,
     target: _Targets,
     *,
-    start: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     limit: int | None = None,
     separation: float | None = None,
     redundancy: int = 16,
@@ -1917,7 +1917,7 @@ def solve_all(
     Args:
         robot: the arm.
         target: pose (4, 4), or position (3,) (m).
-        start: (n,), a hint as in `solve`; solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
+        start_q: (n,), a hint as in `solve`; solutions are sorted by |q - start_q| (rad, m). None: they are returned in the order found.
         limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
         separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
             a closed form are returned, those of a search differ by 0.1.
@@ -2014,7 +2014,7 @@ def self_motion(
     robot: Robot,
     target: _Pose | Mapping[str, _Pose],
     *,
-    start: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     spacing: float = 0.05,
     limits: Limits | None = None,
     seed: int = 0,
@@ -2029,7 +2029,7 @@ def self_motion(
     Args:
         robot: the arm.
         target: pose (4, 4), or position (3,) (m).
-        start: (n,); curves are sorted by their distance from it. None: the longest curve comes first.
+        start_q: (n,); curves are sorted by their distance from it. None: the longest curve comes first.
         spacing: largest distance |q - q'| of consecutive configurations (rad, m), from 0.001 to 0.5.
         limits: position limits; None: the robot's.
         seed: seed of the random draws of a search; the same seed gives the same bits.
@@ -2347,7 +2347,7 @@ def solve_batch(
     robot: Robot,
     targets: _Targets,
     *,
-    starts: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     first_row: int = 0,
     threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
@@ -2375,7 +2375,7 @@ def solve_batch(
         robot: the arm.
         targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several
             tips, a dict of targets as for `solve`.
-        starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
+        start_q: the start of each target, (m, n), or (n,) for all, as in `solve`.
         first_row: row of the first of these targets in a larger batch. `solve_batch(robot, targets[k:], first_row=k)`
             gives the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of the
             larger batch.
@@ -2388,7 +2388,7 @@ def solve_batch(
             Levenberg-Marquardt from many starts for everything else.
         position_tolerance: largest position error (m).
         rotation_tolerance: largest rotation error, a geodesic angle (rad).
-        goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
+        goals, prefer, joint_weights: as for `solve`; the weights need `start_q`.
         limits: position limits; None: the robot's.
         obstacles, margin, self_collision: as for `solve`.
         stop: budgets of each target; None: as for `solve`.
@@ -2753,7 +2753,7 @@ def from_function(function: Callable[[float], ArrayLike], duration: float) -> Pa
 def track(
     robot: Robot,
     path: _Paths,
-    start: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     *,
     dt: float,
     task: _Tasks = None,
@@ -2786,7 +2786,7 @@ def track(
             duration, for example {"left_tool": path}; a constant pose (4, 4) or position (3,) counts as a path, and a
             tip left out is free. The key ("left_tool", "right_tool") gives the second tip in the frame of the first.
             This relative pose has priority, so that both arms lag where one cannot follow.
-        start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
+        start_q: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
             or, without goals, one far from singularities and limits.
         dt: time step (s).
         task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
@@ -2812,7 +2812,7 @@ def track(
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
             at its "start".
-        start_slack: how far start may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
+        start_slack: how far start_q may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
             inside within its limits, see `TrackResult.start_outside`. None: 5 degrees, 5 mm for joints that slide.
         ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
             that meets the moving path, after which the arm is on it. The tip is off the path until then.
@@ -2993,7 +2993,7 @@ class Tracker:
 
     Args:
         robot: the arm.
-        start: (n,), configuration at t = 0.
+        start_q: (n,), configuration at t = 0.
         dt: time step (s).
         task: as in `track`; it may also name tips that get their targets later.
         solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
@@ -3011,7 +3011,7 @@ class Tracker:
         limit_at: as in `track`.
         target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
         timeout: time without a new target after which the arm stops (s); None: never.
-        start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
+        start_slack: how far start_q, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
             there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
             Rounding is taken off in any case.
         recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
@@ -3030,7 +3030,7 @@ class Tracker:
     def __new__(
         cls,
         robot: Robot,
-        start: ArrayLike,
+        start_q: ArrayLike,
         *,
         dt: float,
         task: _Tasks = None,
@@ -3720,14 +3720,14 @@ def plan_point_to_point(
     """
 
 def state_to_state(
-    q0: ArrayLike,
-    q1: ArrayLike,
+    start_q: ArrayLike,
+    end_q: ArrayLike,
     limits: Limits,
     *,
-    qd0: ArrayLike | None = None,
-    qdd0: ArrayLike | None = None,
-    qd1: ArrayLike | None = None,
-    qdd1: ArrayLike | None = None,
+    start_qd: ArrayLike | None = None,
+    start_qdd: ArrayLike | None = None,
+    end_qd: ArrayLike | None = None,
+    end_qdd: ArrayLike | None = None,
     joint_names: list[str] | None = None,
     robot: Robot | None = None,
     start_slack: ArrayLike | None = None,
@@ -3735,31 +3735,32 @@ def state_to_state(
 ) -> Trajectory:
     """Computes the fastest joint motion from one state to another; all joints arrive together.
 
-    The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
-    qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
-    joint that begins outside its velocity or acceleration limits, or about to leave them, first returns inside them as
-    quickly as its limits allow. The joint that needs longest moves as fast as it can; the others spread their motion over
-    the same time (Berscheid and Kroeger 2021 treat the same problem).
+    The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and
+    start_qdd and end_qdd have no effect. A joint with velocity limits alone moves at constant velocity, and start_qd and
+    end_qd have no effect. A joint that begins outside its velocity or acceleration limits, or about to leave them, first
+    returns inside them as quickly as its limits allow. The joint that needs longest moves as fast as it can; the others
+    spread their motion over the same time (Berscheid and Kroeger 2021 treat the same problem).
 
     Args:
-        q0, q1: positions at the start and at the end (n,) (rad, m).
+        start_q, end_q: positions at the start and at the end (n,) (rad, m).
         limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
-        qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
-        qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
+        start_qd, end_qd: velocities (n,) (rad/s, m/s); None: zero.
+        start_qdd, end_qdd: accelerations (n,) (rad/s^2, m/s^2); None: zero.
         joint_names: n names; None: "q1", "q2" and so on, or those of the robot.
         robot: the arm whose joints these are: position and velocity limits left out are then its own, and joints that turn without
             limits go the short way round.
-        start_slack: how far q0 may be outside its position limits (rad, m), a number or (n,); the motion then begins there and goes
-            inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
-        end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
+        start_slack: how far start_q may be outside its position limits (rad, m), a number or (n,); the motion then begins
+            there and goes inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
+        end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of end_q nearest to start_q;
+            "as_given": at end_q.
 
     Returns:
-        A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
+        A `Trajectory` of cubic segments. Its `start_outside` names the joints of start_q that it leads inside.
 
     Raises:
         TypeError: limits that are no `Limits`.
         InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
-        LimitError: q0 farther outside its limits than start_slack, or q1 outside them.
+        LimitError: start_q farther outside its limits than start_slack, or end_q outside them.
         InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
             limits.
         UnsupportedLimit: limits that vary in time.
@@ -4433,7 +4434,7 @@ class Violation:
 def track_model_free(
     plant: _Plant,
     path: Path,
-    start: ArrayLike,
+    start_q: ArrayLike,
     *,
     dt: float,
     controller: BroydenBAS | ZNNBAS | None = None,
@@ -4454,7 +4455,7 @@ def track_model_free(
             exception or returns anything else, the run ends with the record so far; on the first measurement, the
             exception propagates.
         path: reference positions, or poses, over time.
-        start: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
+        start_q: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
             inside.
         dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
         controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
@@ -4621,7 +4622,7 @@ class ZNNBAS:
         """Delay of the sensor, in ticks."""
     def session(
         self,
-        start: ArrayLike,
+        start_q: ArrayLike,
         *,
         dt: float,
         limits: Limits | None = None,
@@ -4629,14 +4630,14 @@ class ZNNBAS:
         rotation_tolerance: float = 1e-9,
         seed: int = 0,
     ) -> ControlSession:
-        """Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop."""
+        """Starts a `ControlSession` at `start_q` (n,) and t = 0, for your own loop."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
 class ControlSession:
     """A model-free controller for your own loop and hardware.
 
-        session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
+        session = bik.BroydenBAS(max_evaluations_per_step=1).session(start_q, dt=0.01, limits=limits)
         while session.time < path.duration:
             q = session.command(path.position(session.time + session.dt))
             session.observe(measure_tip_after(q))

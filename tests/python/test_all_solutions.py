@@ -31,7 +31,7 @@ def test_the_closed_form_is_told(robot: bik.Robot, closed_form: str) -> None:
 
 
 def test_the_set_is_complete_and_exact() -> None:
-    found = bik.solve_all(UR, POSE, start=Q)
+    found = bik.solve_all(UR, POSE, start_q=Q)
     assert (len(found), found.complete, found.singular) == (8, True, False)
     assert found.message == "8 distinct solutions, no others inside the limits"
     np.testing.assert_allclose(UR.fk(found.q), np.broadcast_to(POSE, (8, 4, 4)), rtol=0, atol=1e-10)
@@ -39,13 +39,13 @@ def test_the_set_is_complete_and_exact() -> None:
 
 
 def test_whole_turns_on_request() -> None:
-    found = bik.solve_all(UR, POSE, start=Q, turns=True)
+    found = bik.solve_all(UR, POSE, start_q=Q, turns=True)
     assert found.complete
     assert len(found) > 100
     assert len(np.unique(found.q.round(6), axis=0)) == len(found)
     assert ((UR.lower <= found.q) & (found.q <= UR.upper)).all()
     np.testing.assert_allclose(UR.fk(found.q), np.broadcast_to(POSE, (len(found), 4, 4)), rtol=0, atol=1e-9)
-    nearest = bik.solve_all(UR, POSE, start=Q, turns=True, limit=5)
+    nearest = bik.solve_all(UR, POSE, start_q=Q, turns=True, limit=5)
     assert not nearest.complete
     np.testing.assert_array_equal(nearest.q, found.q[:5])
 
@@ -53,7 +53,7 @@ def test_whole_turns_on_request() -> None:
 def test_too_many_turns_are_refused() -> None:
     wide = bik.Limits(lower=-60.0, upper=60.0)
     with pytest.raises(bik.InvalidInputError, match=r"^turns=True makes \d+ configurations; at most 10000 are allowed"):
-        bik.solve_all(UR, POSE, start=Q, turns=True, limits=wide)
+        bik.solve_all(UR, POSE, start_q=Q, turns=True, limits=wide)
 
 
 def test_what_is_left_out_is_not_called_complete() -> None:
@@ -65,7 +65,7 @@ def test_what_is_left_out_is_not_called_complete() -> None:
 
 def test_a_singular_pose_is_reported() -> None:
     q = np.array([0.4, -1.2, 1.1, -1.3, 0.0, 0.2])
-    found = bik.solve_all(UR, UR.fk(q), start=q)
+    found = bik.solve_all(UR, UR.fk(q), start_q=q)
     assert found.singular
     assert found.message.endswith("; the pose is singular: a family counts as one solution")
 
@@ -103,7 +103,7 @@ def test_redundant_arms_are_sampled(name: str) -> None:
         assert ((robot.lower <= found.q) & (found.q <= robot.upper)).all()
         assert not found.complete
     start = q[0]
-    nearest_first = bik.solve_all(robot, robot.fk(start), start=start).q
+    nearest_first = bik.solve_all(robot, robot.fk(start), start_q=start).q
     distances = np.linalg.norm(nearest_first - start, axis=1)
     assert (np.diff(distances) >= 0.0).all()
 

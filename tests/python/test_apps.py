@@ -83,7 +83,7 @@ def solve(robot: bik.Robot, goal: Array, start: Array) -> bik.Solution:
     stop = bik.Stop(max_iterations=BUDGET)
     solver = bik.papers.APPS.paper()
     return bik.solve(
-        robot, goal, start=start, solver=solver, stop=stop, position_tolerance=1e-4, rotation_tolerance=1e-4
+        robot, goal, start_q=start, solver=solver, stop=stop, position_tolerance=1e-4, rotation_tolerance=1e-4
     )
 
 
@@ -120,7 +120,7 @@ def test_a_prismatic_joint_works_and_is_never_wrapped() -> None:
         convention="standard", lower=[0.0, -3.0, -3.0], upper=[30.0, 3.0, 3.0],
     )  # fmt: skip
     goals = robot.fk(robot.random_configurations(20, seed=2))[:, :3, 3]
-    found = bik.solve_batch(robot, goals, starts=np.tile([15.0, 0.5, 0.5], (20, 1)), solver=bik.papers.APPS())
+    found = bik.solve_batch(robot, goals, start_q=np.tile([15.0, 0.5, 0.5], (20, 1)), solver=bik.papers.APPS())
     assert found.success.mean() >= 0.9
     assert ((robot.lower <= found.q) & (found.q <= robot.upper)).all()
 
@@ -128,7 +128,7 @@ def test_a_prismatic_joint_works_and_is_never_wrapped() -> None:
 def test_a_solution_outside_the_limits_is_told() -> None:
     robot = bik.Robot.planar([1.0, 1.0], lower=-0.5, upper=0.5)
     goal = bik.Robot.planar([1.0, 1.0]).fk([0.1, 1.0])[:3, 3]
-    solution = bik.solve(robot, goal, start=[0.2, 0.4], solver=bik.papers.APPS())
+    solution = bik.solve(robot, goal, start_q=[0.2, 0.4], solver=bik.papers.APPS())
     assert (solution.success, solution.status) == (False, bik.Status.OUTSIDE_LIMITS)
     assert solution.message.startswith("reached only outside the limits; inside them 0.")
     assert np.abs(solution.q).max() <= 0.5

@@ -144,11 +144,11 @@ def test_positions_leave_the_orientation_free() -> None:
 
 def test_starts_are_one_for_each_or_one_for_all() -> None:
     starts = PANDA.random_configurations(300, seed=7)
-    each = bik.solve_batch(PANDA, TARGETS, starts=starts)
+    each = bik.solve_batch(PANDA, TARGETS, start_q=starts)
     np.testing.assert_array_equal(each.q, starts)
     assert np.all(each.evaluations == 1)
-    common = bik.solve_batch(PANDA, TARGETS[:20], starts=starts[4])
-    alone = [bik.solve(PANDA, target, start=starts[4]).evaluations for target in TARGETS[:1]]
+    common = bik.solve_batch(PANDA, TARGETS[:20], start_q=starts[4])
+    alone = [bik.solve(PANDA, target, start_q=starts[4]).evaluations for target in TARGETS[:1]]
     assert common.evaluations[0] == alone[0]
     assert common.evaluations[4] == 1
 
@@ -169,12 +169,12 @@ def test_any_layout_of_memory_is_read() -> None:
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_wrong_rows_are_skipped_on_demand(threads: int) -> None:
-    batch = bik.solve_batch(PANDA, WRONG, starts=HIGH, on_invalid="skip", threads=threads)
+    batch = bik.solve_batch(PANDA, WRONG, start_q=HIGH, on_invalid="skip", threads=threads)
     assert batch.status.tolist() == [0, 8, 8, 8]
     assert batch.success.tolist() == [True, False, False, False]
     assert np.isnan(batch.q[1:]).all()
     assert np.isnan(batch.position_error[1:]).all()
-    np.testing.assert_array_equal(batch.q[0], bik.solve_batch(PANDA, TARGETS[:1], starts=HIGH[:1]).q[0])
+    np.testing.assert_array_equal(batch.q[0], bik.solve_batch(PANDA, TARGETS[:1], start_q=HIGH[:1]).q[0])
     assert batch.message == '1 of 4 solved; 3 INVALID: use on_invalid="raise" to see what is wrong'
     assert batch[1].status is bik.Status.INVALID
     assert batch[1].message == 'not solved: use on_invalid="raise" to see what is wrong'
@@ -189,12 +189,12 @@ MISTAKES: list[Case] = [
         "the nearest rotation is U V' of its singular value decomposition U S V'",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH),
         Invalid,
         "row 3: start must be finite, but joint 'panda_joint6' is NaN",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[3], on_invalid="skip"),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[3], on_invalid="skip"),
         Invalid,
         "start must be finite, but joint 'panda_joint6' is NaN",
     ),
@@ -215,17 +215,17 @@ MISTAKES: list[Case] = [
     ),
     (lambda: bik.solve_batch(PANDA, None), Invalid, "targets must be an array of numbers, got None"),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[:, :6]),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[:, :6]),
         Invalid,
-        "starts of robot 'panda': expected shape (7,) or (m, 7), got (4, 6)",
+        "start_q of robot 'panda': expected shape (7,) or (m, 7), got (4, 6)",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[:3]),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[:3]),
         Invalid,
         "starts: expected 28 numbers, 4 rows (one per target) of 7 joints, got 21",
     ),
     (
-        lambda: bik.solve_batch(PANDA, TARGETS[:4], starts=HIGH[0, :6]),
+        lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[0, :6]),
         Invalid,
         "start of robot 'panda': expected 7 joints, got 6",
     ),

@@ -66,7 +66,7 @@ def jacobians(q: Array) -> tuple[Array, Array]:
 def test_the_centre_is_where_it_was_asked_to_be(seed: int) -> None:
     q, other = draw(2, seed)
     target = {**hands(q), CENTER: PAIR.center_of_mass(q)}
-    found = bik.solve(PAIR, target, task={CENTER: LEVEL}, start=0.8 * q + 0.2 * other)
+    found = bik.solve(PAIR, target, task={CENTER: LEVEL}, start_q=0.8 * q + 0.2 * other)
     assert found.success, found.message
     assert found.errors[CENTER][0] < 1e-6
     assert np.isnan(found.errors[CENTER][1])
@@ -87,7 +87,7 @@ def test_the_whole_centre_with_one_hand() -> None:
 def test_a_higher_level_is_as_near_as_the_hands_allow(seed: int) -> None:
     q = draw(1, seed)[0]
     target = {**hands(q), CENTER: PAIR.center_of_mass(q) + np.array([1.0, -0.5, 0.0])}
-    found = bik.solve(PAIR, target, task={CENTER: Position(level=1)}, start=q)
+    found = bik.solve(PAIR, target, task={CENTER: Position(level=1)}, start_q=q)
     assert found.status is GIVEN_UP
     assert max(found.errors[tip][0] for tip in PAIR.tips) < 1e-6
     assert "level 1 not met, the nearest found is the centre of mass" in found.message
@@ -104,7 +104,7 @@ def test_a_hand_gives_way_to_the_centre_of_a_lower_level() -> None:
     beyond = hands(q)["right_tool"].copy()
     beyond[:3, 3] += (0.0, -2.0, 0.0)
     target = {"right_tool": beyond, CENTER: PAIR.center_of_mass(q)}
-    found = bik.solve(PAIR, target, task={CENTER: LEVEL, "right_tool": Position(level=1)}, start=q)
+    found = bik.solve(PAIR, target, task={CENTER: LEVEL, "right_tool": Position(level=1)}, start_q=q)
     assert found.status is GIVEN_UP
     np.testing.assert_allclose(oracle().center_of_mass(found.q)[:2], target[CENTER][:2], atol=1e-6)
 
@@ -112,7 +112,7 @@ def test_a_hand_gives_way_to_the_centre_of_a_lower_level() -> None:
 def test_within_a_tolerance_the_centre_is_met() -> None:
     q = draw(1, 5)[0]
     target = {**hands(q), CENTER: PAIR.center_of_mass(q) + np.array([0.02, 0.0, 5.0])}
-    found = bik.solve(PAIR, target, task={CENTER: Position(tolerance=(0.03, 0.03, np.inf))}, start=q)
+    found = bik.solve(PAIR, target, task={CENTER: Position(tolerance=(0.03, 0.03, np.inf))}, start_q=q)
     assert found.success
     assert abs(oracle().center_of_mass(found.q) - target[CENTER])[:2].max() <= 0.03 + 1e-9
 
@@ -120,7 +120,7 @@ def test_within_a_tolerance_the_centre_is_met() -> None:
 def test_a_batch_and_all_solutions_meet_it() -> None:
     qs = draw(4, 11)
     targets = {**{tip: PAIR.fk(qs)[:, i] for i, tip in enumerate(PAIR.tips)}, CENTER: PAIR.center_of_mass(qs)}
-    batch = bik.solve_batch(PAIR, targets, starts=qs + 0.02, task={CENTER: LEVEL})
+    batch = bik.solve_batch(PAIR, targets, start_q=qs + 0.02, task={CENTER: LEVEL})
     assert batch.success.all()
     assert batch.errors[CENTER][0].max() < 1e-6
     found = bik.solve_all(PAIR, {**hands(qs[0]), CENTER: PAIR.center_of_mass(qs[0])}, task={CENTER: LEVEL}, limit=4)
@@ -152,7 +152,9 @@ def test_a_track_takes_a_path_of_the_centre() -> None:
     times = np.linspace(0.0, 2.0, 41)
     places = begin + np.stack([0.02 * np.sin(np.pi * times) ** 2, 0 * times, 0 * times], axis=1)
     path = bik.paths.from_samples(times, places)
-    result = bik.track(PAIR, {CENTER: path, "left_tool": hands(q)["left_tool"]}, dt=0.02, start=q, task={CENTER: LEVEL})
+    result = bik.track(
+        PAIR, {CENTER: path, "left_tool": hands(q)["left_tool"]}, dt=0.02, start_q=q, task={CENTER: LEVEL}
+    )
     assert result.success
     assert result.errors[CENTER][0].max() < 1e-4
 
@@ -170,7 +172,7 @@ def test_a_payload_counts() -> None:
     loaded = PAIR.with_payload(4.0, link="left_tool")
     target = {**hands(q), CENTER: loaded.center_of_mass(q)}
     assert np.linalg.norm(PAIR.center_of_mass(q) - target[CENTER]) > 0.01
-    found = bik.solve(loaded, target, task={CENTER: LEVEL}, start=0.8 * q + 0.2 * other)
+    found = bik.solve(loaded, target, task={CENTER: LEVEL}, start_q=0.8 * q + 0.2 * other)
     assert found.success, found.message
     np.testing.assert_allclose(loaded.center_of_mass(found.q)[:2], target[CENTER][:2], atol=1e-6)
 

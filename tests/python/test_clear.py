@@ -57,7 +57,7 @@ def test_the_margin_is_one_millimetre_unless_given() -> None:
     lowest = free.clearance
     for gap, margin, solved in ((5e-4, None, False), (5e-4, 0.0, True), (2e-3, None, True), (2e-3, 3e-3, False)):
         near = [bik.obstacles.HalfSpace((0, 0, 1), -5.0 + lowest - gap)]
-        found = bik.solve_all(UR5, tip, start=free.q, limit=1, obstacles=near, margin=margin, self_collision=False)
+        found = bik.solve_all(UR5, tip, start_q=free.q, limit=1, obstacles=near, margin=margin, self_collision=False)
         assert (found.success and found[0].clearance == pytest.approx(gap, abs=1e-8)) == solved, (gap, margin)
 
 

@@ -286,7 +286,7 @@ def test_wrong_input_is_told_exactly(arguments: list[str], message: str) -> None
         ["fk", "iiwa14", "--q", "0,0"],
         ["fk", "--urdf", "no-such-file.urdf", "--q", "0"],
         [*TRACK, "--dt", "0"],
-        [*TRACK, "--start", "9,9,9,9,9"],
+        [*TRACK, "--start-q", "9,9,9,9,9"],
         [*TRACK, "--velocity-limit", "-1"],
         [*TRACK, "--velocity-sinusoid", "0.1,0.2,1"],
         ["track", "planar5", "--path", "no-such-file.csv"],
@@ -367,7 +367,7 @@ def test_messages_name_options_instead_of_keywords(command: str, message: str) -
 
 def test_joint_weights_are_options_of_solve_and_track() -> None:
     start = "0,-0.4,0,-2,0,1.6,0.8"
-    asked = ("solve", "panda", "--position", "0.4,0.1,0.5", "--start", start)
+    asked = ("solve", "panda", "--position", "0.4,0.1,0.5", "--start-q", start)
     plain, weighted = (np.array(run_json(*asked, *more)["q"]) for more in ((), ("--joint-weights", "100,1,1,1,1,1,1")))
     assert abs(weighted[0]) < 0.1 * abs(plain[0])
     without_start = refused("solve", "panda", "--position", "0.4,0.1,0.5", "--joint-weights", "2,1,1,1,1,1,1")

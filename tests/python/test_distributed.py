@@ -92,7 +92,7 @@ def test_a_part_of_a_batch_has_the_bits_of_the_whole() -> None:
     "starts", [PANDA.clip(np.zeros(7)), PANDA.random_configurations(51, seed=1)], ids=["one", "each"]
 )
 def test_starts_go_with_their_targets(starts: np.ndarray) -> None:
-    options = {"starts": starts, "prefer": "nearest"}
+    options = {"start_q": starts, "prefer": "nearest"}
     assert columns(in_chunks(None, **options)) == columns(bik.solve_batch(PANDA, POSITIONS, seed=4, **options))
 
 
@@ -359,7 +359,7 @@ MISTAKES: list[Case] = [
         Invalid,
         "progress must be True, False or a callable of (done, total), got 3",
     ),
-    (lambda: in_chunks(None, starts=np.zeros((3, 7))), Invalid, "starts: expected 51 rows, one per target, got 3"),
+    (lambda: in_chunks(None, start_q=np.zeros((3, 7))), Invalid, "start_q: expected 51 rows, one per target, got 3"),
     (lambda: in_chunks(None, threads=0), Invalid, "threads must be from 1 to 1024, got 0"),
     (lambda: in_chunks(None, position_tolerance=0), Invalid, "position_tolerance must be positive, got 0"),
     (

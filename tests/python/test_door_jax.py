@@ -122,7 +122,7 @@ def test_gradients_through_1000_solutions_are_exact(robot: bik.Robot) -> None:
 
     def cost(twist: np.ndarray) -> np.ndarray:
         batch = bik.solve_batch(
-            robot, moved(targets, twist), starts=q, position_tolerance=1e-12, rotation_tolerance=1e-12
+            robot, moved(targets, twist), start_q=q, position_tolerance=1e-12, rotation_tolerance=1e-12
         )
         return np.einsum("mi,mi->m", weights, batch.q)
 
@@ -142,7 +142,7 @@ def test_a_vmap_is_one_batch_of_the_core(monkeypatch: pytest.MonkeyPatch) -> Non
     targets = PANDA.fk(q)
     found = jax.jit(jax.vmap(door.solve(PANDA)))(targets, q).block_until_ready()
     assert sizes == [10_000]
-    plain = bik.solve_batch(PANDA, targets, starts=q, position_tolerance=1e-12, rotation_tolerance=1e-12)
+    plain = bik.solve_batch(PANDA, targets, start_q=q, position_tolerance=1e-12, rotation_tolerance=1e-12)
     np.testing.assert_array_equal(found, plain.q)
     both = jax.vmap(jax.vmap(door.solve(PANDA), (None, 0)), (0, None))(targets[:3], q[:4])
     assert both.shape == (3, 4, 7)

@@ -60,7 +60,7 @@ def test_a_batch_is_one_of_the_core_and_is_broadcast() -> None:
     q = PANDA.random_configurations(1000, seed=1)
     targets = PANDA.fk(q)
     found, reached = door.solve(PANDA, success=True)(torch.tensor(targets), torch.tensor(q[0]))
-    plain = bik.solve_batch(PANDA, targets, starts=q[0], position_tolerance=1e-12, rotation_tolerance=1e-12)
+    plain = bik.solve_batch(PANDA, targets, start_q=q[0], position_tolerance=1e-12, rotation_tolerance=1e-12)
     np.testing.assert_array_equal(found, plain.q)
     assert reached.all()
     start = tensor(BENT[0])

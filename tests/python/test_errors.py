@@ -84,10 +84,10 @@ def test_the_classes_of_errors() -> None:
             Invalid,
             "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)",
         ),
-        (lambda: solve(start=[0.0] * 6), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
-        (lambda: solve(start=np.zeros((1, 7))), Invalid, "start: expected one dimension, got shape (1, 7)"),
-        (lambda: solve(start=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_a7' is NaN"),
-        (lambda: solve(start=with_entry(0, -np.inf)), Invalid, "start must be finite, but joint 'joint_a1' is -inf"),
+        (lambda: solve(start_q=[0.0] * 6), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
+        (lambda: solve(start_q=np.zeros((1, 7))), Invalid, "start_q: expected one dimension, got shape (1, 7)"),
+        (lambda: solve(start_q=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_a7' is NaN"),
+        (lambda: solve(start_q=with_entry(0, -np.inf)), Invalid, "start must be finite, but joint 'joint_a1' is -inf"),
         (
             lambda: solve(solver="BAS"),
             Invalid,
@@ -170,7 +170,7 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
             f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: "
             f"{TURNED}; {RADIANS}",
         ),
-        (lambda: track("home"), Invalid, "start must be an array of numbers, got 'home'"),
+        (lambda: track("home"), Invalid, "start_q must be an array of numbers, got 'home'"),
         (lambda: track(solver="bas"), Invalid, f"{SOLVERS} or WeightedPseudoInverse, got 'bas'"),
         (lambda: track(position_tolerance=-1.0), Invalid, "position_tolerance must be positive, got -1"),
         (lambda: track(limit_at="end"), Invalid, "limit_at must be one of 'interval', 'start', got 'end'"),

@@ -48,7 +48,7 @@ WORDS = {
     "kinds": "kind",
     "positions_or_poses": "points|poses",
     "semi_axes": "semi-axes",
-    "starts": "start",
+    "start_q": "start",
     "waypoints_q": "waypoints?",
     "start_speed": "speed at the start",
     "end_speed": "speed at the end",
@@ -74,7 +74,7 @@ MOTION = bik.Trajectory.from_samples([0.0, 1.0], [[0.0, 0.0], [1.0, 1.0]])
 LIMITS = bik.Limits(velocity=1.0, acceleration=2.0)
 QUICK = {"stop": bik.Stop(max_evaluations=100)}
 PLACED = {"center": (0, 0, 0), "duration": 1.0}
-TICKS = {"start": START, "dt": 0.1}
+TICKS = {"start_q": START, "dt": 0.1}
 PLAN = bik.plan_point_to_point(PLANAR, start_q=[0, 0, 0], end_q=[0.1, 0.1, 0.1], limits=LIMITS)
 WEIGHTED = bik.Robot.named("panda")
 WEIGHED_PLAN = bik.plan_point_to_point(
@@ -240,7 +240,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "solve": {"robot": ARM, "target": (0.3, 0.3, 1.0), **QUICK},
     "solve_all": {"robot": ARM, "target": (0.3, 0.3, 1.0), "limit": 2, **QUICK},
     "solve_batch": {"robot": ARM, "targets": [(0.3, 0.3, 1.0)], "threads": 1, **QUICK},
-    "state_to_state": {"q0": [0, 0], "q1": [1, 1], "limits": LIMITS},
+    "state_to_state": {"start_q": [0, 0], "end_q": [1, 1], "limits": LIMITS},
     "time_optimal": {"waypoints_q": [[0, 0], [1, 1]], "limits": LIMITS},
     "track": {"robot": ARM, "path": LINE, **TICKS},
     "track_model_free": {"plant": bik.KinematicPlant(ARM), "path": LINE, **TICKS},

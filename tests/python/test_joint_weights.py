@@ -46,7 +46,7 @@ def cheapest(
 @pytest.mark.parametrize("weight", [1.0, 3.0, 10.0, 100.0, 1e3, 1e6])
 def test_a_heavy_base_stays_where_the_arm_can_do_it(weight: float) -> None:
     target = shifted(MOBILE, START, 0.01, 0, 0)
-    solution = bik.solve(MOBILE, target, start=START, joint_weights=heavy_base(weight))
+    solution = bik.solve(MOBILE, target, start_q=START, joint_weights=heavy_base(weight))
     moved = solution.q - START
     expected = cheapest(MOBILE, START, np.r_[0.01, np.zeros(5)], heavy_base(weight))
     assert solution.success
@@ -61,7 +61,7 @@ def test_no_solution_nearby_is_nearer_by_the_weights(seed: int) -> None:
     weights = random.choice([1.0, 2.0, 10.0, 100.0], 10)
     q = np.r_[random.uniform(-1, 1, 3), ARM + random.uniform(-0.3, 0.3, 7)]
     target = shifted(MOBILE, q, *random.uniform(-0.1, 0.1, 3))
-    solution = bik.solve(MOBILE, target, start=q, joint_weights=weights)
+    solution = bik.solve(MOBILE, target, start_q=q, joint_weights=weights)
     assert solution.success
 
     def error(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -85,8 +85,8 @@ def test_equal_weights_give_the_bits_of_none() -> None:
     for weight in (1.0, 2.0, 1e-3, 1e6):
         for robot, q in ((MOBILE, START), (PANDA, ARM), (UR5, np.array([0.3, -1.2, 1.4, -0.8, -1.1, 0.5]))):
             target = shifted(robot, q, *random.uniform(-0.1, 0.1, 3))
-            plain = bik.solve(robot, target, start=q)
-            same = bik.solve(robot, target, start=q, joint_weights=np.full(len(q), weight))
+            plain = bik.solve(robot, target, start_q=q)
+            same = bik.solve(robot, target, start_q=q, joint_weights=np.full(len(q), weight))
             assert plain.q.tobytes() == same.q.tobytes()
             assert plain.evaluations == same.evaluations
             trackers = [
@@ -102,7 +102,9 @@ def test_equal_weights_give_the_bits_of_none() -> None:
 def test_a_factor_of_all_weights_changes_nothing() -> None:
     weights = np.r_[100.0, 30.0, 7.0, np.linspace(1.0, 5.0, 7)]
     target = shifted(MOBILE, START, 0.05, -0.02, 0.03)
-    of = [bik.solve(MOBILE, target, start=START, joint_weights=factor * weights).q for factor in (1.0, 1e-6, 0.1, 1e9)]
+    of = [
+        bik.solve(MOBILE, target, start_q=START, joint_weights=factor * weights).q for factor in (1.0, 1e-6, 0.1, 1e9)
+    ]
     ticks = []
     for factor in (1.0, 1e-6, 0.1, 1e9):
         tracker = bik.Tracker(MOBILE, START, dt=0.01, joint_weights=factor * weights)
@@ -118,13 +120,13 @@ def test_of_the_branches_the_nearest_by_the_weights() -> None:
         start, other = UR5.random_configurations(2, seed=int(random.integers(1 << 30)))
         weights = random.choice([1.0, 10.0, 1e3], 6)
         target = UR5.fk(other)
-        found = bik.solve_all(UR5, target, start=start, turns=True)
+        found = bik.solve_all(UR5, target, start_q=start, turns=True)
         if not found.complete:
             continue
         costs = np.linalg.norm(weights * (found.q - start), axis=1)
-        solution = bik.solve(UR5, target, start=start, joint_weights=weights)
+        solution = bik.solve(UR5, target, start_q=start, joint_weights=weights)
         assert np.linalg.norm(weights * (solution.q - start)) <= costs.min() + 1e-6
-        differ += bool(np.abs(solution.q - bik.solve(UR5, target, start=start).q).max() > 1e-3)
+        differ += bool(np.abs(solution.q - bik.solve(UR5, target, start_q=start).q).max() > 1e-3)
     assert differ > 5
 
 
@@ -134,7 +136,7 @@ def test_nearest_compares_many_by_the_weights() -> None:
         weights = random.choice([1.0, 10.0, 100.0], 7)
         target = PANDA.fk(PANDA.random_configurations(1, seed=int(random.integers(1 << 30)))[0])
         each = [
-            bik.solve(PANDA, target, start=ARM, joint_weights=weights, prefer=prefer) for prefer in ("nearest", "any")
+            bik.solve(PANDA, target, start_q=ARM, joint_weights=weights, prefer=prefer) for prefer in ("nearest", "any")
         ]
         assert all(solution.success for solution in each)
         nearest, first = (np.linalg.norm(weights * (solution.q - ARM)) for solution in each)
@@ -147,7 +149,7 @@ def test_nearest_compares_many_by_the_weights() -> None:
 def test_any_solver_minds_the_weights(solver: Any) -> None:
     target = MOBILE.fk(START)[:3, 3] + [0.01, 0, 0]
     solution = bik.solve(
-        MOBILE, target, start=START, solver=solver, joint_weights=heavy_base(100.0), position_tolerance=1e-4,
+        MOBILE, target, start_q=START, solver=solver, joint_weights=heavy_base(100.0), position_tolerance=1e-4,
         stop=bik.Stop(max_evaluations=20_000),
     )  # fmt: skip
     assert solution.success
@@ -160,8 +162,8 @@ def test_several_tips_mind_the_weights() -> None:
     for pose in targets.values():
         pose[2, 3] += 0.01
     weights = np.r_[np.full(len(q) - 14, 100.0), np.ones(14)]
-    solution = bik.solve(PAIR, targets, start=q, joint_weights=weights)
-    plain = bik.solve(PAIR, targets, start=q)
+    solution = bik.solve(PAIR, targets, start_q=q, joint_weights=weights)
+    plain = bik.solve(PAIR, targets, start_q=q)
     assert solution.success
     assert np.linalg.norm(weights * (solution.q - q)) <= np.linalg.norm(weights * (plain.q - q)) + 1e-9
     tracker = bik.Tracker(PAIR, q, dt=0.02, joint_weights=weights)
@@ -171,8 +173,8 @@ def test_several_tips_mind_the_weights() -> None:
 
 def test_a_batch_minds_the_weights_of_each_start() -> None:
     targets = np.array([shifted(MOBILE, START, 0.01 * i, 0, 0) for i in range(1, 4)])
-    batch = bik.solve_batch(MOBILE, targets, starts=START, joint_weights=heavy_base(100.0))
-    one = bik.solve(MOBILE, targets[0], start=START, joint_weights=heavy_base(100.0))
+    batch = bik.solve_batch(MOBILE, targets, start_q=START, joint_weights=heavy_base(100.0))
+    one = bik.solve(MOBILE, targets[0], start_q=START, joint_weights=heavy_base(100.0))
     assert batch.q[0].tobytes() == one.q.tobytes()
     assert np.abs(batch.q[:, BASE] - START[BASE]).max() < 1e-3
 
@@ -236,7 +238,7 @@ def test_a_target_that_only_the_base_reaches_is_reached(weight: float, limits: b
         tracker = bik.Tracker(MOBILE, START, dt=0.01, joint_weights=weights, limits=limits)
         ticks.append(next(i for i in range(1000) if tracker.step(target).success))
     assert ticks[1] <= 1.5 * ticks[0]
-    assert bik.solve(MOBILE, target, start=START, joint_weights=heavy_base(weight)).success
+    assert bik.solve(MOBILE, target, start_q=START, joint_weights=heavy_base(weight)).success
 
 
 def test_one_heavy_joint_among_the_joints_of_an_arm() -> None:
@@ -244,8 +246,8 @@ def test_one_heavy_joint_among_the_joints_of_an_arm() -> None:
     for j in range(7):
         weights = np.ones(7)
         weights[j] = 1e6
-        solution = bik.solve(PANDA, target, start=ARM, joint_weights=weights)
-        plain = bik.solve(PANDA, target, start=ARM)
+        solution = bik.solve(PANDA, target, start_q=ARM, joint_weights=weights)
+        plain = bik.solve(PANDA, target, start_q=ARM)
         assert solution.success
         assert abs(solution.q[j] - ARM[j]) <= abs(plain.q[j] - ARM[j]) + 1e-6
 
@@ -288,8 +290,8 @@ BAD = "must be positive and finite (a joint that must not move is locked by its 
 def test_wrong_weights_are_named(weights: Any, message: str) -> None:
     target = PANDA.fk(ARM)
     calls = [
-        lambda: bik.solve(PANDA, target, start=ARM, joint_weights=weights),
-        lambda: bik.solve_batch(PANDA, target[None], starts=ARM, joint_weights=weights),
+        lambda: bik.solve(PANDA, target, start_q=ARM, joint_weights=weights),
+        lambda: bik.solve_batch(PANDA, target[None], start_q=ARM, joint_weights=weights),
         lambda: bik.Tracker(PANDA, ARM, dt=0.01, joint_weights=weights),
         lambda: bik.track(PANDA, bik.paths.circle(target[:3, 3], 0.05, 1.0), ARM, dt=0.1, joint_weights=weights),
     ]
@@ -312,7 +314,7 @@ def test_weights_that_have_no_meaning_are_refused() -> None:
     calls = [
         (lambda: bik.solve(PANDA, target, joint_weights=weights), start),
         (lambda: bik.solve_batch(PANDA, target[None], joint_weights=weights), start),
-        (lambda: bik.solve(PANDA, target, start=ARM, goals=goal, joint_weights=weights), goals),
+        (lambda: bik.solve(PANDA, target, start_q=ARM, goals=goal, joint_weights=weights), goals),
         (lambda: bik.Tracker(PANDA, ARM, dt=0.01, joint_weights=weights, solver=bik.WeightedPseudoInverse()), rule),
         (lambda: bik.Tracker(PANDA, ARM, dt=0.01, joint_weights=weights, solver=bik.LevenbergMarquardt()), rule),
     ]  # fmt: skip

@@ -129,7 +129,7 @@ def test_a_planar_arm_keeps_a_line_among_obstacles() -> None:
 
     height = tip(start[None])[0, 1]
     keep = Keep((0.0, height, 0.0), tasks.Position(tolerance=[INF, 0.05, INF]))
-    end = bik.solve(robot, (tip(start[None])[0, 0] - 1.0, height, 0.0), start=start).q
+    end = bik.solve(robot, (tip(start[None])[0, 0] - 1.0, height, 0.0), start_q=start).q
     ball = bik.obstacles.Sphere((0.7, 0.2, 0.0), 0.1)
     for options in ({}, {"obstacles": [ball]}):
         plan = bik.plan_point_to_point(robot, start_q=start, end_q=end, keep=keep, limits=RATED, **options)

@@ -21,7 +21,7 @@ def problem(seed: int) -> tuple[np.ndarray, np.ndarray, bik.obstacles.Obstacle]:
         y, height = random.uniform(-0.1, 0.1), random.uniform(0.5, 0.8)
         post = bik.obstacles.Capsule((0.75, y, 0.0), (0.75, y, height), 0.04)
         start = bik.solve(PAIR, {"left_tool": begin, HANDS: TRAY}, goals=[bik.goals.Centring()], obstacles=[post])
-        there = bik.solve(PAIR, {"left_tool": end, HANDS: TRAY}, start=start.q, obstacles=[post])
+        there = bik.solve(PAIR, {"left_tool": end, HANDS: TRAY}, start_q=start.q, obstacles=[post])
         if start.success and there.success:
             return start.q, there.q, post
 

@@ -39,8 +39,8 @@ def test_the_torque_falls_and_is_least_nearby(robot: bik.Robot) -> None:
     before, after = [], []
     for q in 0.9 * robot.random_configurations(15, seed=3):
         target = robot.fk(q)
-        plain = bik.solve(robot, target, start=q)
-        held = bik.solve(robot, target, start=q, goals=HOLD)
+        plain = bik.solve(robot, target, start_q=q)
+        held = bik.solve(robot, target, start_q=q, goals=HOLD)
         assert plain.success
         assert held.success
         assert np.allclose(robot.fk(held.q), target, atol=1e-5)
@@ -57,17 +57,17 @@ def test_the_torque_falls_and_is_least_nearby(robot: bik.Robot) -> None:
 
 def test_the_best_is_no_worse_than_the_nearest_optimum() -> None:
     for q in PANDA.random_configurations(10, seed=4):
-        nearest = bik.solve(PANDA, PANDA.fk(q), start=q, goals=HOLD)
-        best = bik.solve(PANDA, PANDA.fk(q), start=q, goals=HOLD, prefer="best")
+        nearest = bik.solve(PANDA, PANDA.fk(q), start_q=q, goals=HOLD)
+        best = bik.solve(PANDA, PANDA.fk(q), start_q=q, goals=HOLD, prefer="best")
         assert best.success
         assert effort(PANDA, best.q) <= effort(PANDA, nearest.q) * (1 + 1e-6)
 
 
 def test_a_batch_solves_as_single_calls() -> None:
     qs = PANDA.random_configurations(8, seed=5)
-    batch = bik.solve_batch(PANDA, PANDA.fk(qs), starts=qs, goals=HOLD)
+    batch = bik.solve_batch(PANDA, PANDA.fk(qs), start_q=qs, goals=HOLD)
     for q, found in zip(qs, batch.q, strict=True):
-        assert np.array_equal(found, bik.solve(PANDA, PANDA.fk(q), start=q, goals=HOLD).q)
+        assert np.array_equal(found, bik.solve(PANDA, PANDA.fk(q), start_q=q, goals=HOLD).q)
 
 
 def test_the_payload_and_gravity_of_the_robot_count() -> None:
@@ -75,10 +75,10 @@ def test_the_payload_and_gravity_of_the_robot_count() -> None:
     # Without gravity nothing is to be held: the goal moves no joint.
     weightless = bare.with_gravity((0, 0, 0))
     assert np.allclose(
-        bik.solve(weightless, target, start=Q, goals=HOLD).q, bik.solve(weightless, target, start=Q).q, atol=1e-9
+        bik.solve(weightless, target, start_q=Q, goals=HOLD).q, bik.solve(weightless, target, start_q=Q).q, atol=1e-9
     )
     aside = PANDA.with_gravity((0, 9.81, 0))
-    solutions = [bik.solve(robot, target, start=Q, goals=HOLD).q for robot in (bare, PANDA, aside)]
+    solutions = [bik.solve(robot, target, start_q=Q, goals=HOLD).q for robot in (bare, PANDA, aside)]
     for i, robot in enumerate((bare, PANDA, aside)):
         others = [effort(robot, q) for j, q in enumerate(solutions) if j != i]
         assert effort(robot, solutions[i]) < min(others)
@@ -87,8 +87,8 @@ def test_the_payload_and_gravity_of_the_robot_count() -> None:
 def test_joints_count_by_what_they_are_relative_to() -> None:
     only = np.full(7, np.inf)
     only[3] = 10.0
-    held = bik.solve(PANDA, PANDA.fk(Q), start=Q, goals=bik.goals.LeastTorque(relative_to=only))
-    all_alike = bik.solve(PANDA, PANDA.fk(Q), start=Q, goals=HOLD)
+    held = bik.solve(PANDA, PANDA.fk(Q), start_q=Q, goals=bik.goals.LeastTorque(relative_to=only))
+    all_alike = bik.solve(PANDA, PANDA.fk(Q), start_q=Q, goals=HOLD)
     assert abs(PANDA.torques(held.q)[3]) < abs(PANDA.torques(all_alike.q)[3]) < abs(PANDA.torques(Q)[3]) + 1e-9
 
 
@@ -104,7 +104,7 @@ def test_a_tracker_lowers_the_torque_on_the_way(limits: bik.Limits | None) -> No
             step = tracker.step(aside)
         assert np.allclose(PANDA.fk(step.q), target, atol=1e-3)
         efforts[goals is None] = effort(PANDA, step.q)
-    best = effort(PANDA, bik.solve(PANDA, target, start=Q, goals=HOLD).q)
+    best = effort(PANDA, bik.solve(PANDA, target, start_q=Q, goals=HOLD).q)
     assert efforts[False] < 0.9 * efforts[True]
     assert efforts[False] < 1.02 * best
 
@@ -112,7 +112,7 @@ def test_a_tracker_lowers_the_torque_on_the_way(limits: bik.Limits | None) -> No
 def test_a_track_takes_it_too() -> None:
     circle = bik.paths.circle(center=PANDA.fk(Q)[:3, 3], diameter=0.1, duration=4.0)
     efforts = [
-        effort(PANDA, bik.track(PANDA, circle, dt=0.02, start=Q, goals=goals).q[-1])
+        effort(PANDA, bik.track(PANDA, circle, dt=0.02, start_q=Q, goals=goals).q[-1])
         for goals in (None, bik.goals.LeastTorque(weight=5.0))
     ]
     assert efforts[1] < 0.9 * efforts[0]
@@ -122,7 +122,7 @@ def test_a_floating_base_never_counts() -> None:
     half = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
     floating = PANDA.with_mobile_base("floating", lower=-half, upper=half)
     q = np.concatenate([np.zeros(6), Q])
-    held = bik.solve(floating, floating.fk(q), start=q, goals=HOLD, prefer="any")
+    held = bik.solve(floating, floating.fk(q), start_q=q, goals=HOLD, prefer="any")
     assert held.success
     arm = slice(6, None)
     before, after = ((floating.torques(x)[arm] / PANDA.torque_limit) for x in (q, held.q))
@@ -137,7 +137,7 @@ def test_several_tips_take_it() -> None:
     targets = dict(zip(pair.tips, pair.fk(q), strict=True))
     scale = np.full(pair.dof, 50.0)
     goal = bik.goals.LeastTorque(relative_to=scale)
-    plain, held = (bik.solve(pair, targets, start=q, goals=goals) for goals in (None, goal))
+    plain, held = (bik.solve(pair, targets, start_q=q, goals=goals) for goals in (None, goal))
     assert plain.success
     assert held.success
     assert effort(pair, held.q, scale) < effort(pair, plain.q, scale)

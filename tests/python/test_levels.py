@@ -302,7 +302,7 @@ def test_a_track_gives_up_the_higher_level() -> None:
         PAIR,
         {"left": path, "right": beyond},
         dt=0.02,
-        start=q,
+        start_q=q,
         task={"right": Pose(level=1)},
         limits=bik.Limits(velocity=3.0),
     )

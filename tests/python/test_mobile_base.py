@@ -53,7 +53,7 @@ def test_the_calls_of_the_library_take_it(robot: bik.Robot) -> None:
     plan = bik.plan_point_to_point(robot, start_q=start, end_q=clear.q, obstacles=[pillar], limits=limits)
     assert plan.success, plan.message
     path = bik.paths.circle(center=robot.fk(start)[:3, 3] - [0.3, 0, 0], diameter=0.6, duration=4.0)
-    run = bik.track(robot, path, dt=0.01, start=start, limits=limits, ease=True)
+    run = bik.track(robot, path, dt=0.01, start_q=start, limits=limits, ease=True)
     assert run.position_error[-1] < 1e-4
     along = bik.plan_along_path(robot, path, start_q=start, limits=limits)
     assert along.success, along.message
@@ -112,8 +112,8 @@ def test_robots_of_many_joints(joints: int) -> None:
     start = qs[2]
     path = bik.paths.circle(center=robot.fk(start)[:3, 3] - [0.05, 0, 0], diameter=0.1, duration=3.0)
     for rule in (None, bik.WeightedPseudoInverse()):
-        assert bik.track(robot, path, dt=0.01, start=start, limits=bik.Limits(), solver=rule).q.shape[1] == joints
-    assert bik.track(robot, path, dt=0.01, start=start, limits=limits, ease=True).q.shape[1] == joints
+        assert bik.track(robot, path, dt=0.01, start_q=start, limits=bik.Limits(), solver=rule).q.shape[1] == joints
+    assert bik.track(robot, path, dt=0.01, start_q=start, limits=limits, ease=True).q.shape[1] == joints
     plan = bik.plan_point_to_point(robot, start_q=qs[3], end_q=qs[4], limits=limits)
     assert plan.success
     thick, ball = robot.with_capsules(radius=0.005), [bik.obstacles.Sphere((1.0, 1.0, 1.0), 0.5)]

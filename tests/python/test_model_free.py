@@ -347,7 +347,7 @@ def test_plants_are_values_too() -> None:
 
 
 def test_broyden_solves_and_tracks() -> None:
-    solution = bik.solve(IIWA, IIWA.fk(ON_CIRCLE), solver=bik.BroydenBAS(), start=ON_CIRCLE + 0.1)
+    solution = bik.solve(IIWA, IIWA.fk(ON_CIRCLE), solver=bik.BroydenBAS(), start_q=ON_CIRCLE + 0.1)
     assert solution.success, solution.message
     result = bik.track(IIWA, SHORT, ON_CIRCLE, dt=0.2, solver=bik.BroydenBAS(), position_tolerance=1e-9)
     assert result.success, result.message

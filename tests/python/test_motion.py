@@ -23,7 +23,7 @@ def test_a_motion_from_state_to_state_ends_there_and_keeps_the_limits() -> None:
     for _ in range(50):
         qd0, qd1 = rng.uniform(-1.0, 1.0, (2, 7))
         qdd0, qdd1 = rng.uniform(-2.0, 2.0, (2, 7))
-        motion = bik.state_to_state(HOME, THERE, LIMITS, qd0=qd0, qdd0=qdd0, qd1=qd1, qdd1=qdd1)
+        motion = bik.state_to_state(HOME, THERE, LIMITS, start_qd=qd0, start_qdd=qdd0, end_qd=qd1, end_qdd=qdd1)
         for t, state in ((0.0, (HOME, qd0, qdd0)), (motion.duration, (THERE, qd1, qdd1))):
             np.testing.assert_allclose(motion.at(t), state, atol=1e-10)
         assert np.all(motion.max_velocity() <= 1.5 * (1 + 1e-9))
@@ -46,23 +46,23 @@ def test_no_motion_takes_longer_than_that_of_ruckig() -> None:
             given.current_position,
             given.target_position,
             LIMITS,
-            qd0=given.current_velocity,
-            qdd0=given.current_acceleration,
-            qd1=given.target_velocity,
-            qdd1=given.target_acceleration,
+            start_qd=given.current_velocity,
+            start_qdd=given.current_acceleration,
+            end_qd=given.target_velocity,
+            end_qdd=given.target_acceleration,
         )
         assert ours.duration <= theirs.duration * (1 + 1e-6)
 
 
 def test_mistakes_are_named() -> None:
-    with pytest.raises(bik.InvalidInputError, match=r"^q1: expected 7 joints, got 3$"):
+    with pytest.raises(bik.InvalidInputError, match=r"^end_q: expected 7 joints, got 3$"):
         bik.state_to_state(HOME, THERE[:3], LIMITS)
-    with pytest.raises(bik.InvalidInputError, match=r"^qd0 must be finite, but joint 'q2' is NaN$"):
-        bik.state_to_state(HOME, THERE, LIMITS, qd0=[0.0, np.nan, 0.0, 0.0, 0.0, 0.0, 0.0])
+    with pytest.raises(bik.InvalidInputError, match=r"^start_qd must be finite, but joint 'q2' is NaN$"):
+        bik.state_to_state(HOME, THERE, LIMITS, start_qd=[0.0, np.nan, 0.0, 0.0, 0.0, 0.0, 0.0])
     with pytest.raises(bik.UnsupportedLimit, match=r"^state_to_state cannot honour time-varying velocity limits"):
         bik.state_to_state(HOME, THERE, bik.Limits(velocity=bik.Sinusoid(mean=1, amplitude=0.1, angular_frequency=1)))
     with pytest.raises(bik.InfeasibleError, match=r"beyond its upper limit"):
-        bik.state_to_state([0.98], [0.5], bik.Limits(upper=1.0, acceleration=4.0), qd0=[1.0])
+        bik.state_to_state([0.98], [0.5], bik.Limits(upper=1.0, acceleration=4.0), start_qd=[1.0])
 
 
 def test_a_retimed_plan_keeps_its_path_and_survives_pickling() -> None:

@@ -20,8 +20,8 @@ TARGET = PANDA.fk(READY)
 MOTION = bik.time_optimal([READY, 0.9 * READY], bik.Limits(velocity=1.0, acceleration=1.0))
 BUILT_IN = ", ".join(bik.Robot.names())
 OF_SOLVE = (
-    "robot, target, task, start, solver, position_tolerance, rotation_tolerance, goals, prefer, joint_weights, limits, "
-    "obstacles, margin, self_collision, stop, seed"
+    "robot, target, task, start_q, solver, position_tolerance, rotation_tolerance, goals, prefer, joint_weights, "
+    "limits, obstacles, margin, self_collision, stop, seed"
 )
 SOLVERS = (
     "BAS, BeeColony, BeetleSwarm, DifferentialEvolution, Firefly, Genetic, PSO, QPSO, APPS, BroydenBAS, "
@@ -50,7 +50,7 @@ SOLVERS = (
         (
             lambda: bik.solve(PANDA, TARGET, q0=READY),  # type: ignore[call-arg]
             bik.CallError,
-            f"solve() got an unexpected keyword argument 'q0' (did you mean 'start'?); its arguments: {OF_SOLVE}",
+            f"solve() got an unexpected keyword argument 'q0' (did you mean 'start_q'?); its arguments: {OF_SOLVE}",
         ),
         (
             lambda: bik.Limits(vel=1.0),  # type: ignore[call-arg]
@@ -84,7 +84,7 @@ SOLVERS = (
         (
             lambda: bik.Tracker(PANDA, READY),  # type: ignore[call-arg]
             bik.CallError,
-            "Tracker() missing 1 required keyword argument: 'dt': call it as Tracker(robot, start, dt=..., ...)",
+            "Tracker() missing 1 required keyword argument: 'dt': call it as Tracker(robot, start_q, dt=..., ...)",
         ),
         (
             lambda: bik.solve(PANDA, TARGET, READY),  # type: ignore[misc]
@@ -353,9 +353,9 @@ def test_the_command_line_says_which_extra_it_needs() -> None:
 @pytest.mark.parametrize(
     ("call", "wrong", "meant"),
     [
-        (bik.solve, "q0", "start"),
-        (bik.solve, "initial_guess", "start"),
-        (bik.solve, "Start", "start"),
+        (bik.solve, "q0", "start_q"),
+        (bik.solve, "initial_guess", "start_q"),
+        (bik.solve, "starts", "start_q"),
         (bik.solve, "pose", "target"),
         (bik.solve, "tol", "position_tolerance"),
         (bik.solve, "rot_tolerance", "rotation_tolerance"),

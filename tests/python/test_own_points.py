@@ -158,10 +158,10 @@ def test_calls_that_begin_in_a_cloud_name_the_remedy(kind: str, remedy: str) -> 
     calls: dict[str, Callable[[], object]] = {
         "plan": lambda: bik.plan_point_to_point(PANDA, **plan),
         "plan, free_start": lambda: bik.plan_point_to_point(PANDA, **plan, free_start=True),
-        "solve": lambda: bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=seen),
-        "solve, end": lambda: bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=seen, prefer="nearest"),
-        "solve_batch": lambda: bik.solve_batch(PANDA, PANDA.fk(Q)[None], starts=Q, obstacles=seen),
-        "solve_all": lambda: bik.solve_all(PANDA, PANDA.fk(Q), start=Q, obstacles=seen),
+        "solve": lambda: bik.solve(PANDA, PANDA.fk(Q), start_q=Q, obstacles=seen),
+        "solve, end": lambda: bik.solve(PANDA, PANDA.fk(Q), start_q=Q, obstacles=seen, prefer="nearest"),
+        "solve_batch": lambda: bik.solve_batch(PANDA, PANDA.fk(Q)[None], start_q=Q, obstacles=seen),
+        "solve_all": lambda: bik.solve_all(PANDA, PANDA.fk(Q), start_q=Q, obstacles=seen),
         "along a path": lambda: bik.plan_along_path(PANDA, line, start_q=Q, limits=LIMITS, obstacles=seen),
         "track": lambda: bik.track(PANDA, line, Q, dt=0.1, obstacles=seen),
         "tracker": lambda: bik.Tracker(PANDA, Q, dt=0.1, obstacles=seen).step(PANDA.fk(Q)),
@@ -179,7 +179,9 @@ def test_a_cloud_at_the_end_alone_may_be_real() -> None:
     said = message(lambda: bik.plan_point_to_point(PANDA, start_q=away, end_q=Q, limits=LIMITS, obstacles=seen))
     assert said.startswith("end: link 'link_")
     assert "without_robot" not in said
-    either = bik.solve(PANDA, PANDA.fk(Q), start=away, obstacles=[bik.obstacles.PointCloud([PANDA.fk(Q)[:3, 3]], 0.05)])
+    either = bik.solve(
+        PANDA, PANDA.fk(Q), start_q=away, obstacles=[bik.obstacles.PointCloud([PANDA.fk(Q)[:3, 3]], 0.05)]
+    )
     assert f"{OWN_POINTS}; if there are none, choose another target" in either.message
-    boxed = bik.solve(PANDA, PANDA.fk(Q), start=Q, obstacles=[bik.obstacles.Sphere(PANDA.fk(Q)[:3, 3], 0.05)])
+    boxed = bik.solve(PANDA, PANDA.fk(Q), start_q=Q, obstacles=[bik.obstacles.Sphere(PANDA.fk(Q)[:3, 3], 0.05)])
     assert "without_robot" not in boxed.message

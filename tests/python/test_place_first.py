@@ -81,7 +81,7 @@ def test_a_start_chooses_among_equal_branches() -> None:
     for q in HOBBY.random_configurations(20, seed=3):
         target = turned(HOBBY.fk(q), np.array([0.2, -0.1, 0.3]))
         free = bik.solve(HOBBY, target)
-        near = bik.solve(HOBBY, target, start=q)
+        near = bik.solve(HOBBY, target, start_q=q)
         assert near.rotation_error == pytest.approx(free.rotation_error, abs=1e-4)
         assert np.linalg.norm(near.q - q) <= np.linalg.norm(free.q - q) + 1e-9
 
@@ -274,17 +274,17 @@ def test_joints_of_a_large_weight_stay() -> None:
     goal = bik.goals.Posture(start, weight=weight)
     np.testing.assert_array_equal(goal.weight, weight)
     assert pickle.loads(pickle.dumps(goal)) == goal
-    found = bik.solve(robot, target, start=start, goals=[goal])
+    found = bik.solve(robot, target, start_q=start, goals=[goal])
     assert found.success
     assert np.linalg.norm(found.q[:2] - start[:2]) < 1e-4
-    plain = bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=2.0)])
+    plain = bik.solve(robot, target, start_q=start, goals=[bik.goals.Posture(start, weight=2.0)])
     assert np.linalg.norm(plain.q[:2] - start[:2]) > 3e-3
-    same = bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=np.full(10, 2.0))])
+    same = bik.solve(robot, target, start_q=start, goals=[bik.goals.Posture(start, weight=np.full(10, 2.0))])
     np.testing.assert_allclose(same.q, plain.q, atol=1e-5)
     with pytest.raises(bik.InvalidInputError, match=r"^weight\[1\] of a goal must be zero or more, and finite, got -1"):
         bik.goals.Posture(start[:3], weight=[1.0, -1.0, 1.0])
     with pytest.raises(bik.InvalidInputError, match=r"^weight of a goal of robot .*: expected 10 joints, got 2$"):
-        bik.solve(robot, target, start=start, goals=[bik.goals.Posture(start, weight=[1.0, 2.0])])
+        bik.solve(robot, target, start_q=start, goals=[bik.goals.Posture(start, weight=[1.0, 2.0])])
 
 
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "ur5e"])

@@ -27,7 +27,7 @@ def reaching_through(scene: bik.Scene, x: float, random: np.random.Generator) ->
         left, right = random.uniform((0.1, 0.6), (0.6, 1.3)), random.uniform((-0.6, 0.6), (-0.1, 1.3))
         targets = {"left_tool": (beyond[0], *left), "right_tool": (beyond[1], *right)}
         start = ROBOT.random_configurations(1, seed=int(random.integers(2**31)))[0]
-        solution = bik.solve(ROBOT, targets, start=start, obstacles=scene, margin=2 * MARGIN)
+        solution = bik.solve(ROBOT, targets, start_q=start, obstacles=scene, margin=2 * MARGIN)
         if solution.success:
             return solution.q
 

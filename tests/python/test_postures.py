@@ -41,7 +41,7 @@ def test_any_arm_finds_its_best_posture() -> None:
     q = 0.5 * (robot.lower + robot.upper) + 0.2
     goal = bik.goals.Manipulability()
     best = bik.solve(robot, robot.fk(q), goals=goal, prefer="best")
-    near = bik.solve(robot, robot.fk(q), start=q, goals=goal)
+    near = bik.solve(robot, robot.fk(q), start_q=q, goals=goal)
     assert best.success
     assert robot.manipulability(best.q) >= robot.manipulability(near.q) * (1 - 1e-6)
     links = bik.goals.LinkManipulability(weight=2.0)

@@ -217,7 +217,7 @@ def test_a_scene_and_the_list_of_its_obstacles_are_the_same_to_every_call(many: 
         lambda obstacles: bik.solve_batch(robot, robot.fk(np.array([q, -q])), obstacles=obstacles).q,
         lambda obstacles: bik.obstacles.clearance(robot, q, obstacles),
         lambda obstacles: bik.obstacles.nearest(robot, q, obstacles),
-        lambda obstacles: bik.Tracker(robot, start=q, dt=0.01, obstacles=obstacles).obstacles,
+        lambda obstacles: bik.Tracker(robot, start_q=q, dt=0.01, obstacles=obstacles).obstacles,
         lambda obstacles: bik.plan_point_to_point(robot, start_q=q, end_q=q + 0.1, obstacles=obstacles).obstacles,
     ]
     for call in calls:

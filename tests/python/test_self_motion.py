@@ -13,7 +13,7 @@ POSE = PANDA.fk(Q)
 
 
 def test_every_configuration_keeps_the_pose_within_limits_and_spacing() -> None:
-    curves = bik.self_motion(PANDA, POSE, start=Q, spacing=0.1)
+    curves = bik.self_motion(PANDA, POSE, start_q=Q, spacing=0.1)
     for curve in curves:
         np.testing.assert_allclose(PANDA.fk(curve.q), np.broadcast_to(POSE, (len(curve), 4, 4)), rtol=0, atol=1e-8)
         assert ((PANDA.lower <= curve.q) & (curve.q <= PANDA.upper)).all()
@@ -63,7 +63,7 @@ def test_four_joints_and_a_position() -> None:
     arm = bik.Robot.from_dh(**table, convention="standard")
     q = np.array([0.4, 0.7, -0.9, 0.6])
     position = arm.fk(q)[:3, 3]
-    curves = bik.self_motion(arm, position, start=q)
+    curves = bik.self_motion(arm, position, start_q=q)
     np.testing.assert_allclose(arm.fk(curves[0].q)[:, :3, 3], np.broadcast_to(position, (len(curves[0]), 3)), atol=1e-8)
     assert np.linalg.norm(curves[0].q - q, axis=1).min() <= 0.05
 

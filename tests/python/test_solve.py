@@ -48,7 +48,7 @@ def test_poses_are_reached_by_pinocchios_word(name: str) -> None:
     with np.load(SHARED / "targets" / f"{name}.npz") as stored:
         targets, starts = stored["pose"][:20], stored["q_start"][:20]
     for target, start in zip(targets, starts, strict=True):
-        found = bik.solve(robot, target, start=start)
+        found = bik.solve(robot, target, start_q=start)
         assert found.success, found.message
         pose, _ = oracle.fk_and_jacobian(robot.joint_names, found.q)
         assert np.linalg.norm(pose[:3, 3] - target[:3, 3]) <= 1e-6
@@ -60,7 +60,7 @@ def test_every_solver_reaches_a_position(solver: object) -> None:
     robot = bik.Robot.named("iiwa14")
     target = np.array([0.4, 0.3, 0.9])
     start = [0.6449, 0.2037, 0.1969, -0.7714, 0.2028, 0.7179, 0.1]
-    found = bik.solve(robot, target, start=start, solver=solver, position_tolerance=1e-5)
+    found = bik.solve(robot, target, start_q=start, solver=solver, position_tolerance=1e-5)
     assert found.success, found.message
     assert np.linalg.norm(robot.fk(found.q)[:3, 3] - target) <= 1e-5
 
@@ -106,7 +106,7 @@ def test_a_position_leaves_the_orientation_free() -> None:
 def test_a_start_that_is_a_solution_is_kept() -> None:
     robot = bik.Robot.named("ur5e")
     start = robot.random_configurations(1)[0]
-    found = bik.solve(robot, robot.fk(start), start=start)
+    found = bik.solve(robot, robot.fk(start), start_q=start)
     np.testing.assert_array_equal(found.q, start)
     assert (found.evaluations, found.iterations, found.restarts) == (1, 0, 0)
 
@@ -149,7 +149,7 @@ def test_seeds_repeat_and_differ() -> None:
 def test_an_evaluation_budget_is_kept_exactly(solver: object, budget: int) -> None:
     robot = bik.Robot.named("iiwa14")
     stop = bik.Stop(max_evaluations=budget)
-    found = bik.solve(robot, [9.0, 0.0, 0.0], start=[0.1] * 7, solver=solver, stop=stop)
+    found = bik.solve(robot, [9.0, 0.0, 0.0], start_q=[0.1] * 7, solver=solver, stop=stop)
     assert not found.success
     assert found.evaluations <= budget
     if found.status is bik.Status.BUDGET_SPENT:

@@ -64,15 +64,15 @@ def assert_kept(q: Array, limits: bik.Limits, dt: float, *, start: Array, robot:
 def test_solve_takes_any_finite_start_as_a_hint(beyond: float) -> None:
     for start in (below(beyond), 2 * INSIDE - below(beyond)):
         target = PANDA.fk(INSIDE)
-        solution = bik.solve(PANDA, target, start=start)
+        solution = bik.solve(PANDA, target, start_q=start)
         assert solution.success
         assert np.all((PANDA.lower <= solution.q) & (solution.q <= PANDA.upper))
-        batch = bik.solve_batch(PANDA, target[None], starts=start[None])
+        batch = bik.solve_batch(PANDA, target[None], start_q=start[None])
         assert batch.success.all()
         assert np.all((PANDA.lower <= batch.q) & (batch.q <= PANDA.upper))
-        found = bik.solve_all(PANDA, target, start=start).q
+        found = bik.solve_all(PANDA, target, start_q=start).q
         assert np.all((PANDA.lower <= found) & (found <= PANDA.upper))
-        clear = bik.solve(PANDA, target, start=start, prefer="nearest")
+        clear = bik.solve(PANDA, target, start_q=start, prefer="nearest")
         assert clear.success
         assert np.all((PANDA.lower <= clear.q) & (clear.q <= PANDA.upper))
 
@@ -80,7 +80,7 @@ def test_solve_takes_any_finite_start_as_a_hint(beyond: float) -> None:
 def test_a_start_outside_is_not_returned_as_the_solution() -> None:
     capsules = PANDA.with_capsules(radius=0.03)
     start = below(0.05)
-    solution = bik.solve(capsules, PANDA.fk(start), start=start, obstacles=[])
+    solution = bik.solve(capsules, PANDA.fk(start), start_q=start, obstacles=[])
     assert np.all((PANDA.lower <= solution.q) & (solution.q <= PANDA.upper))
 
 
@@ -291,7 +291,8 @@ def test_state_to_state_leads_a_start_inside() -> None:
     assert motion.q[0] == [-1.05]
     assert np.all(np.diff(motion.sample(1e-3)[1][:, 0]) >= -1e-12)
     slid = roller("prismatic")
-    with pytest.raises(bik.LimitError, match=r"q0: joint 'j0' at -0.01 is outside its limits \[0, 0.5\] by 0.01000 m"):
+    outside = r"start_q: joint 'j0' at -0.01 is outside its limits \[0, 0.5\] by 0.01000 m"
+    with pytest.raises(bik.LimitError, match=outside):
         bik.state_to_state([-0.01], [0.2], LIMITS, robot=slid)
     assert bik.state_to_state([-0.004], [0.2], LIMITS, robot=slid).q[0] == [-0.004]
     assert bik.state_to_state([-0.01], [0.2], LIMITS, robot=slid, start_slack=0.02).joint_names == ["j0"]

@@ -57,7 +57,9 @@ def test_swarms_solve_for_positions(swarm: Any) -> None:
 
 
 def test_a_solve_may_stop_at_a_value() -> None:
-    found = bik.solve(IIWA, [0.4, 0.3, 0.8], start=[0.1] * 7, solver=bik.papers.PSO(), stop=bik.Stop(value_below=1e-2))
+    found = bik.solve(
+        IIWA, [0.4, 0.3, 0.8], start_q=[0.1] * 7, solver=bik.papers.PSO(), stop=bik.Stop(value_below=1e-2)
+    )
     assert found.status == bik.Status.IMPROVED
     assert not found.success
     assert found.message.startswith("below the requested value, ")

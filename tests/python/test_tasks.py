@@ -107,18 +107,18 @@ def test_the_tip_is_kept_in_its_region() -> None:
 
 def test_the_nearest_solution_is_nearest() -> None:
     start = Q + 0.1
-    nearest = bik.solve(IIWA, POSE, start=start, prefer="nearest")
+    nearest = bik.solve(IIWA, POSE, start_q=start, prefer="nearest")
     assert nearest.success
     assert np.linalg.norm(nearest.q - start) <= np.linalg.norm(Q - start) + 1e-6
-    batch = bik.solve_batch(IIWA, POSE[None], starts=start, prefer="nearest")
+    batch = bik.solve_batch(IIWA, POSE[None], start_q=start, prefer="nearest")
     np.testing.assert_array_equal(batch.q[0], nearest.q)
 
 
 def test_goals_change_the_solution_as_asked() -> None:
     posture = Q + 0.2
-    plain = bik.solve(IIWA, POSE, start=Q)
-    near = bik.solve(IIWA, POSE, start=Q, goals=goals.Posture(posture))
-    best = bik.solve(IIWA, POSE, start=Q, goals=[goals.Manipulability()])
+    plain = bik.solve(IIWA, POSE, start_q=Q)
+    near = bik.solve(IIWA, POSE, start_q=Q, goals=goals.Posture(posture))
+    best = bik.solve(IIWA, POSE, start_q=Q, goals=[goals.Manipulability()])
     assert near.success
     assert best.success
     assert np.linalg.norm(near.q - posture) < np.linalg.norm(plain.q - posture)
@@ -145,7 +145,7 @@ def test_a_path_is_followed_as_far_as_the_task_asks() -> None:
 def test_all_solutions_of_a_six_joint_arm() -> None:
     q = np.array([0.4, -1.1, 1.3, 0.2, 0.9, -0.5])
     pose = UR.fk(q)
-    found = bik.solve_all(UR, pose, start=q)
+    found = bik.solve_all(UR, pose, start_q=q)
     assert len(found) == 8, found.message
     assert found.success
     assert found.status == bik.Status.SOLVED
@@ -185,7 +185,7 @@ def test_a_start_is_brought_inside_where_the_user_says_so() -> None:
     outside = with_entry(0, 3.0)
     inside = IIWA.clip(outside)
     np.testing.assert_array_equal(inside, [IIWA.upper[0], 0, 0, 0, 0, 0, 0])
-    assert bik.solve(IIWA, POSE, start=inside).success
+    assert bik.solve(IIWA, POSE, start_q=inside).success
     both = IIWA.clip([outside, with_entry(1, -9.0)])
     np.testing.assert_array_equal(both[1], [0, IIWA.lower[1], 0, 0, 0, 0, 0])
 
@@ -278,7 +278,7 @@ def solve(**options: object) -> bik.Solution:
         (lambda: solve(prefer="near"), Invalid, "prefer must be one of 'any', 'nearest', 'best', got 'near'"),
         (lambda: solve(prefer="nearest"), Invalid, 'prefer="nearest" needs a start to measure distances from'),
         (
-            lambda: solve(prefer="nearest", start=Q, goals=goals.Centring()),
+            lambda: solve(prefer="nearest", start_q=Q, goals=goals.Centring()),
             Invalid,
             'prefer="nearest" takes no goals: the distance to the start is its goal',
         ),
@@ -294,7 +294,7 @@ def solve(**options: object) -> bik.Solution:
             "separation must be positive and finite, got 0",
         ),
         (
-            lambda: bik.solve_all(IIWA, POSE, start=with_entry(1, np.nan)),
+            lambda: bik.solve_all(IIWA, POSE, start_q=with_entry(1, np.nan)),
             Invalid,
             "start must be finite, but joint 'joint_a2' is NaN",
         ),

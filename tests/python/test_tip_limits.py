@@ -152,7 +152,7 @@ def test_limits_hold_among_obstacles_and_with_keep() -> None:
     wall = bik.obstacles.Box((0.5, 0.0, 0.1), (0.4, 0.04, 0.4))
     start = bik.solve(UR5, bik.pose([0.5, -0.3, 0.3], rpy=[np.pi, 0, 0])).q
     arm = UR5.with_capsules(radius=0.05)
-    end = bik.solve(UR5, bik.pose([0.5, 0.3, 0.3], rpy=[np.pi, 0, 0]), start=start).q
+    end = bik.solve(UR5, bik.pose([0.5, 0.3, 0.3], rpy=[np.pi, 0, 0]), start_q=start).q
     plan = bik.plan_point_to_point(
         arm, start_q=start, end_q=end, obstacles=[wall], limits=limits(tip_speed=0.25), keep=bik.upright(arm, tilt=0.6)
     )

@@ -148,7 +148,7 @@ def test_the_arms_keep_clear_of_obstacles_and_of_each_other() -> None:
 def test_goals_act_on_all_joints() -> None:
     start = Q[4]
     away = start * 0.9
-    s = bik.solve(PAIR, of_row(4), start=start, goals=bik.goals.Posture(away))
+    s = bik.solve(PAIR, of_row(4), start_q=start, goals=bik.goals.Posture(away))
     assert s.success
     assert np.linalg.norm(s.q - away) < np.linalg.norm(start - away)
     goal = bik.goals.Manipulability(tip="right_tool")

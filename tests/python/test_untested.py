@@ -27,7 +27,7 @@ CALLS = {
     "solve_batch": lambda **o: bik.solve_batch(PANDA, PANDA.fk(READY)[None], **o),
     "plan_point_to_point": lambda **o: bik.plan_point_to_point(PANDA, start_q=READY, end_q=READY + 0.1, **o),
     "plan_along_path": lambda **o: bik.plan_along_path(PANDA, path(), limits=bik.Limits(acceleration=5.0), **o),
-    "track": lambda **o: bik.track(PANDA, path(), dt=0.01, start=READY, **o),
+    "track": lambda **o: bik.track(PANDA, path(), dt=0.01, start_q=READY, **o),
     "Tracker": lambda **o: bik.Tracker(PANDA, READY, dt=0.01, **o),
     "clearance": lambda obstacles, **o: bik.obstacles.clearance(PANDA, READY, obstacles, **o),
 }
@@ -88,8 +88,8 @@ def crossed(seed: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 def test_two_arms_stay_apart_without_being_asked() -> None:
     for seed in range(3):
         q, targets = crossed(seed)
-        assert bik.solve(PAIR, targets, start=q, self_collision=False).success
-        found = bik.solve(PAIR, targets, start=q)
+        assert bik.solve(PAIR, targets, start_q=q, self_collision=False).success
+        found = bik.solve(PAIR, targets, start_q=q)
         if found.success:
             assert bik.obstacles.clearance(PAIR, found.q, []) >= 0.001
         else:

@@ -104,7 +104,7 @@ CALLS = {
     "plan_point_to_point": lambda robot, **o: bik.plan_point_to_point(robot, start_q=START, end_q=GOAL, **o),
     "tpbso": lambda robot, **o: bik.plan_point_to_point(robot, start_q=START, end_q=GOAL, method="tpbso", **o),
     "plan_along_path": lambda robot, **o: bik.plan_along_path(robot, circle(robot), **o),
-    "track": lambda robot, **o: bik.track(robot, circle(robot), dt=0.01, start=GOAL, **o),
+    "track": lambda robot, **o: bik.track(robot, circle(robot), dt=0.01, start_q=GOAL, **o),
     "Tracker": lambda robot, **o: steps(robot, **o)[-1],
 }
 

@@ -127,7 +127,7 @@ def test_an_approach_that_touches_an_obstacle_is_not_made() -> None:
     arm = Arm(PANDA, START, [wall])
     arm.part, arm.follow = "position", "solve"
     arm.aim(TIP, bik.pose(beyond))
-    assert bik.solve(PANDA, beyond, start=START, obstacles=[wall]).status is bik.Status.OUT_OF_REACH
+    assert bik.solve(PANDA, beyond, start_q=START, obstacles=[wall]).status is bik.Status.OUT_OF_REACH
     assert min(ticks(arm)) >= MARGIN
     assert arm.stays
     arm.keeps_clear = False
@@ -224,7 +224,7 @@ def test_results_for_several_tips_are_shown(pair: bik.Viewer) -> None:
     plan = bik.plan_point_to_point(PAIR, start_q=q, end_q=PAIR.clip(0.8 * q), limits=bik.Limits(acceleration=5.0))
     pair.show(plan)
     until(lambda: np.abs(pair.q - q).max() > 0.05)
-    pair.show(bik.solve(PAIR, dict(zip(PAIR.tips, PAIR.fk(q), strict=True)), start=q))
+    pair.show(bik.solve(PAIR, dict(zip(PAIR.tips, PAIR.fk(q), strict=True)), start_q=q))
     np.testing.assert_allclose(pair.q, q, atol=1e-6)
 
 
@@ -630,7 +630,7 @@ def test_the_command_serves_until_it_is_interrupted(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(bik.Viewer, "wait", interrupted)
     bik.Scene([TABLE]).save(tmp_path / "scene.json")
     command = ["view", "panda", "--port", "0", "--link-radius", "0.06", "--scene", str(tmp_path / "scene.json")]
-    assert CliRunner().invoke(app, [*command, "--start", ",".join(map(str, START))]).exit_code == 0
+    assert CliRunner().invoke(app, [*command, "--start-q", ",".join(map(str, START))]).exit_code == 0
     assert served[0].obstacles == bik.Scene([TABLE])
     np.testing.assert_array_equal(served[0].q, START)
 

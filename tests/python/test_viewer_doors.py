@@ -174,6 +174,13 @@ def test_the_token_lasts_for_the_websocket(shared: bik.Viewer) -> None:
     assert page(shared, Cookie=cookie, Host="192.0.2.7:8080")[0] == 200
 
 
+def test_a_viewer_prints_its_address_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    with bik.view(bik.Robot.named("ur5e"), port=0) as viewer:
+        address = viewer.url
+    out, err = capsys.readouterr()
+    assert (out, err) == (f"Viewer: {address}\n", "")
+
+
 def test_tokens_differ_and_only_other_machines_need_them() -> None:
     assert len({Admission("0.0.0.0").token for _ in range(20)}) == 20
     assert all(Admission(host).token is None for host in ("127.0.0.1", "127.0.0.9", "localhost", "::1"))

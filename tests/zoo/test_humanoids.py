@@ -34,7 +34,7 @@ def test_hands_go_where_they_are_sent_while_the_feet_stand(name: str) -> None:
         wanted = {tip: pose.copy() for tip, pose in feet_and_hands.items()}
         for hand in tips[1:]:
             wanted[hand][:3, 3] += rng.uniform(-0.1, 0.1, 3)
-        s = bik.solve(robot, wanted, start=standing, seed=seed)
+        s = bik.solve(robot, wanted, start_q=standing, seed=seed)
         assert s.success, s.message
         theirs = np.zeros(model.nq)
         theirs[[entries[joint] for joint in robot.joint_names]] = s.q

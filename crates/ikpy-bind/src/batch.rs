@@ -195,7 +195,7 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 ///     robot: the arm.
 ///     targets: poses (m, 4, 4), or positions (m, 3) (m) with the orientations left free; for a robot with several
 ///         tips, a dict of targets as for `solve`.
-///     starts: the start of each target, (m, n), or (n,) for all, as in `solve`.
+///     start_q: the start of each target, (m, n), or (n,) for all, as in `solve`.
 ///     first_row: row of the first of these targets in a larger batch. `solve_batch(robot, targets[k:], first_row=k)`
 ///         gives the rows of `solve_batch(robot, targets)` from k on, to the bit, and errors name the rows of the
 ///         larger batch.
@@ -208,7 +208,7 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 ///         Levenberg-Marquardt from many starts for everything else.
 ///     position_tolerance: largest position error (m).
 ///     rotation_tolerance: largest rotation error, a geodesic angle (rad).
-///     goals, prefer, joint_weights: as for `solve`; the weights need `starts`.
+///     goals, prefer, joint_weights: as for `solve`; the weights need `start_q`.
 ///     limits: position limits; None: the robot's.
 ///     obstacles, margin, self_collision: as for `solve`.
 ///     stop: budgets of each target; None: as for `solve`.
@@ -229,17 +229,17 @@ fn column<T: Element>(py: Python<'_>, items: &[SolveReport], of: impl Fn(&SolveR
 ///     >>> batch.q.shape, int(batch.success.sum())
 ///     ((100, 6), 100)
 #[pyfunction]
-#[pyo3(signature = (robot, targets, *, starts=None, first_row=0, threads=None, on_invalid="raise", progress=None, task=None,
+#[pyo3(signature = (robot, targets, *, start_q=None, first_row=0, threads=None, on_invalid="raise", progress=None, task=None,
                     solver=None, position_tolerance=ToleranceArgument::All(1e-6),
                     rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", joint_weights=None, limits=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, targets, *, starts=None, first_row=0, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, targets, *, start_q=None, first_row=0, threads=None, on_invalid='raise', progress=None, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_batch(
     py: Python<'_>,
     robot: &PyRobot,
     targets: &Bound<'_, PyAny>,
-    starts: Option<&Bound<'_, PyAny>>,
+    start_q: Option<&Bound<'_, PyAny>>,
     first_row: i128,
     threads: Option<i128>,
     #[pyo3(from_py_with = crate::convert::text)] on_invalid: &str,
@@ -268,7 +268,7 @@ pub fn solve_batch(
     for ((subject, _), targets) in asked.iter().zip(&each) {
         units::doubt((0..targets.len()).find_map(|row| doubt_about(arm, subject, targets, row)))?;
     }
-    let starts = starts.map(|starts| joint_rows(arm, "starts", starts)).transpose()?;
+    let starts = start_q.map(|q| joint_rows(arm, "start_q", q)).transpose()?;
     let (start_of_each, start_of_all) = match &starts {
         Some(Rows::Many(starts, _)) => (Some(starts.as_slice()?), None),
         Some(Rows::One(start)) => (None, Some(start.as_slice()?.to_vec())),

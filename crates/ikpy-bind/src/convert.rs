@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use ikcore::math::pose::Drift;
 use ikcore::math::{Pose, pose};
 use ikcore::nalgebra::{Matrix3, Matrix4};
+use numpy::ndarray::{Dimension, IntoDimension};
 use numpy::npyffi::{NPY_ARRAY_ALIGNED, NPY_ARRAY_WRITEABLE};
 use numpy::{
     AsSliceError, Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray,
@@ -51,8 +52,8 @@ impl<'py> Deref for Numbers<'py> {
 /// Arguments with an entry for each joint. A table with the names of the joints may have them in another order.
 const OF_JOINTS: [&str; 12] = [
     "waypoints_q",
-    "q0",
-    "q1",
+    "start_q",
+    "end_q",
     "q",
     "qd",
     "qdd",
@@ -335,9 +336,19 @@ pub fn matrix3(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     }
 }
 
-/// Moves numbers in C order into a read-only array of this shape.
-pub fn table<'py, T: Element>(py: Python<'py>, values: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+/// Largest number of values that are copied: an array that takes over a buffer needs two more objects of Python.
+const FEW: usize = 256;
+
+/// Puts numbers in C order into a read-only array of this shape.
+pub fn table<'py, T: Element + Copy>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let count = values.len();
+    if count <= FEW && count == shape.iter().product::<usize>() {
+        return Ok(filled(py, &values, shape));
+    }
     match values.into_pyarray(py).reshape(shape) {
         Ok(array) => Ok(read_only(array)),
         // Rejects corrupt stored values: all other sizes agree.
@@ -352,28 +363,45 @@ pub fn row<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>>
 
 /// Copies a few numbers into a read-only vector, which is cheaper than moving a buffer.
 pub fn copied<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
-    read_only(PyArray1::from_slice(py, values))
+    filled(py, values, values.len())
+}
+
+/// Copies numbers in C order into a read-only array of a shape that they fill.
+fn filled<'py, T: Element + Copy, S: IntoDimension>(
+    py: Python<'py>,
+    values: &[T],
+    shape: S,
+) -> Bound<'py, PyArray<T, S::Dim>> {
+    let shape = shape.into_dimension();
+    debug_assert_eq!(values.len(), shape.size());
+    // SAFETY: the array is new, aligned, in C order, and has room for these numbers.
+    let array = unsafe {
+        let array = PyArray::<T, S::Dim>::new(py, shape, false);
+        array.data().copy_from_nonoverlapping(values.as_ptr(), values.len());
+        array
+    };
+    read_only(array)
 }
 
 /// Converts a pose to a read-only 4x4 matrix.
-pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    Ok(read_only(PyArray1::from_slice(py, &pose::rows(pose)).reshape([4, 4])?))
+pub fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> Bound<'py, PyArray2<f64>> {
+    filled(py, &pose::rows(pose), [4, 4])
 }
 
 /// Converts a matrix to a read-only one of Python.
-pub fn matrix4_array<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    Ok(read_only(PyArray1::from_slice(py, matrix.transpose().as_slice()).reshape([4, 4])?))
+pub fn matrix4_array<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> Bound<'py, PyArray2<f64>> {
+    filled(py, matrix.transpose().as_slice(), [4, 4])
 }
 
 /// Makes the array that a method returns writable: it is a copy of the caller's own. Arrays of attributes stay read-only, since
 /// writing into them would change a record, or nothing.
-pub fn own<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+pub fn own<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
     // SAFETY: the array was made for this call and has no other owner yet.
     unsafe { (*array.as_array_ptr()).fields.flags |= NPY_ARRAY_WRITEABLE };
     array
 }
 
-fn read_only<T: Element, D: numpy::ndarray::Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+fn read_only<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
     // SAFETY: the array was made here and has no other owner yet.
     unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     array

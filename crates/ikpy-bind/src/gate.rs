@@ -3,7 +3,8 @@
 //! PyO3 reads arguments before any function of this library runs. Its errors ("'bool' object is not an instance of
 //! 'str'") name neither the argument nor the value, and it offers no hook to replace them. So each function, method and
 //! constructor of the module is wrapped in a gate, which calls it and, if the arguments did not fit, lets
-//! `beetle_ik.calls.wording` word the error. The usual path costs a few nanoseconds.
+//! `beetle_ik.calls.wording` word the error, or calls it again with keywords that `beetle_ik.calls.renamed` has renamed. The
+//! usual path costs a few nanoseconds.
 
 #![allow(unsafe_code, reason = "C functions of Python")]
 
@@ -67,12 +68,14 @@ unsafe extern "C" fn gate<const I: usize>(
     let Some(call) = member.call.get().or_else(|| member.resolved(this)) else { return std::ptr::null_mut() };
     units::begin_call();
     // SAFETY: these are the arguments of a call by Python, passed on as they are.
-    let made = unsafe { call(this, arguments, count, names) };
+    let mut made = unsafe { call(this, arguments, count, names) };
     if made.is_null() {
-        Python::attach(|py| {
+        made = Python::attach(|py| {
+            let member = member.object.bind(py);
             // SAFETY: as above: `count` positional arguments, then one for each entry of the tuple `names`.
             let given = || unsafe { vector_arguments(py, arguments, count, names) };
-            reword(py, member.object.bind(py), given);
+            // A method needs its instance too; none of them has a deprecated keyword.
+            recall(py, member, given, |arguments, keywords| member.call(arguments, Some(keywords)).map(Bound::into_ptr))
         });
     }
     with_doubts(made)
@@ -168,19 +171,38 @@ unsafe fn vector_arguments<'py>(
     Ok((PyTuple::new(py, (0..count).map(entry))?, keywords))
 }
 
-/// Replaces a pending argument error of PyO3 by an error in the terms of this library.
-fn reword<'py>(py: Python<'py>, member: &Bound<'py, PyAny>, given: impl FnOnce() -> PyResult<Given<'py>>) {
-    let Some(error) = PyErr::take(py) else { return };
-    // Errors raised by Python code, for example by a callback, have a traceback.
-    let of_arguments = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyOverflowError>(py);
-    let error = if of_arguments && error.traceback(py).is_none() {
-        given()
-            .and_then(|(arguments, keywords)| python_calls::worded(py, &error, member, &arguments, &keywords))
-            .unwrap_or(error)
-    } else {
-        error
+/// Treats a pending error of a call: if deprecated keywords are its reason, returns the result of `again` with their new names;
+/// else null, with argument errors of PyO3 replaced by errors in the terms of this library.
+fn recall<'py>(
+    py: Python<'py>,
+    member: &Bound<'py, PyAny>,
+    given: impl FnOnce() -> PyResult<Given<'py>>,
+    again: impl FnOnce(&Bound<'py, PyTuple>, &Bound<'py, PyDict>) -> PyResult<*mut PyObject>,
+) -> *mut PyObject {
+    let made = match PyErr::take(py) {
+        Some(error) if is_of_arguments(py, &error) => given().and_then(|(arguments, keywords)| {
+            let (error, keywords) = match python_calls::renamed(member, &keywords)? {
+                None => (error, keywords),
+                Some(renamed) => match again(&arguments, &renamed) {
+                    Err(error) if is_of_arguments(py, &error) => (error, renamed),
+                    result => return result,
+                },
+            };
+            Err(python_calls::worded(py, &error, member, &arguments, &keywords).unwrap_or(error))
+        }),
+        Some(error) => Err(error),
+        None => return std::ptr::null_mut(),
     };
-    error.restore(py);
+    made.unwrap_or_else(|error| {
+        error.restore(py);
+        std::ptr::null_mut()
+    })
+}
+
+/// Whether PyO3 could not read the arguments. Errors raised by Python code, for example by a callback, have a traceback.
+fn is_of_arguments(py: Python<'_>, error: &PyErr) -> bool {
+    let kind = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyOverflowError>(py);
+    kind && error.traceback(py).is_none()
 }
 
 /// Wraps the functions, methods and constructors of the module in gates.
@@ -318,14 +340,19 @@ unsafe extern "C" fn construct(class: *mut PyObject, given: *mut PyObject, keywo
             Ok((make, made, arguments)) => {
                 units::begin_call();
                 // SAFETY: `made` derives from the class of the constructor.
-                let instance = unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
-                if instance.is_null() {
+                let instance = |keywords| unsafe { make(made.as_type_ptr(), arguments.as_ptr(), keywords) };
+                let mut first = instance(keywords);
+                if first.is_null() {
                     // SAFETY: as above.
                     let named = unsafe { Bound::from_borrowed_ptr_or_opt(py, keywords) };
                     let named = named.and_then(|named| named.cast_into().ok()).unwrap_or_else(|| PyDict::new(py));
-                    reword(py, made.as_any(), || Ok((arguments, named)));
+                    let again = |_: &Bound<'_, PyTuple>, renamed: &Bound<'_, PyDict>| {
+                        let second = instance(renamed.as_ptr());
+                        if second.is_null() { Err(PyErr::fetch(py)) } else { Ok(second) }
+                    };
+                    first = recall(py, made.as_any(), || Ok((arguments.clone(), named)), again);
                 }
-                with_doubts(instance)
+                with_doubts(first)
             }
             Err(error) => {
                 error.restore(py);

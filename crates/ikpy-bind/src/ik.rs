@@ -157,7 +157,7 @@ impl PySolution {
 ///         of the centre of all masses.
 ///     task: part of the target that counts, one of `tasks`, or a dict for several tips, whose `level` says which come first where
 ///         not all can be met; None: all of it.
-///     start: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
+///     start_q: configuration (n,), a hint: one outside the limits is first brought inside, by whole turns or to the nearest limit.
 ///         For an arm with up to 6 joints, the closed form returns the solution nearest to it; a
 ///         search, or the descent of a redundant arm, begins there. None: the closed form returns the most central
 ///         solution inside the limits, and a search begins at stored configurations of the robot with the tip near the
@@ -169,17 +169,17 @@ impl PySolution {
 ///     goals: one or several of `goals`; the solution is moved along its self-motion to a local optimum of the goals.
 ///     prefer: solution to return.
 ///         "any": the first solution found.
-///         "nearest": of the solutions found, the one with the smallest |q - start| (rad, m). Each is moved along its
+///         "nearest": of the solutions found, the one with the smallest |q - start_q| (rad, m). Each is moved along its
 ///         self-motion and by whole turns towards the start; the search ends when 24 in a row are no nearer.
 ///         "best": of the solutions found, the best one for the goals. Each is optimised along its self-motion; the
 ///         search
 ///         ends when 40 in a row are no better. For an arm with one redundant degree of freedom, each solution curve is
 ///         traced once instead, including the parts beyond joint limits.
-///     joint_weights: cost of moving each joint away from `start` (n,), positive; of the solutions, the one with the least sum of
-///         (weight * (q - start))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
+///     joint_weights: cost of moving each joint away from `start_q` (n,), positive; of the solutions, the one with the least sum of
+///         (weight * (q - start_q))^2 is wanted: a base of weight 100 stays where the arm can do it, and still moves where only
 ///         it can. Of the branches of a closed form, the nearest by this measure is returned; a redundant arm is moved along
 ///         its self-motion to the nearest solution nearby, and prefer="nearest" compares many. Only ratios count, up to
-///         1e8. It needs a start, and takes no goals. None: all joints cost the same.
+///         1e8. It needs start_q, and takes no goals. None: all joints cost the same.
 ///     limits: position limits; None: the robot's.
 ///     obstacles: obstacles of `bik.obstacles`, or a `Scene`, that a solution keeps clear of; an empty list for the robot's own
 ///         links alone. None: nothing is checked.
@@ -207,17 +207,17 @@ impl PySolution {
 ///     >>> solution.q.shape
 ///     (6,)
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, task=None, start=None, solver=None, position_tolerance=ToleranceArgument::All(1e-6),
+#[pyo3(signature = (robot, target, *, task=None, start_q=None, solver=None, position_tolerance=ToleranceArgument::All(1e-6),
                     rotation_tolerance=ToleranceArgument::All(1e-6), goals=None, prefer="any", joint_weights=None, limits=None, obstacles=None, margin=None,
                     self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, target, *, task=None, start=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, target, *, task=None, start_q=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, goals=None, prefer='any', joint_weights=None, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve(
     py: Python<'_>,
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
     task: Option<&Bound<'_, PyAny>>,
-    start: Option<&Bound<'_, PyAny>>,
+    start_q: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = read_tolerance)] position_tolerance: ToleranceArgument<'_>,
     #[pyo3(from_py_with = read_tolerance)] rotation_tolerance: ToleranceArgument<'_>,
@@ -247,7 +247,7 @@ pub fn solve(
         stop,
         seed,
     };
-    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
+    let start = start_q.map(|q| joint_vector(&robot.core, "start_q", q)).transpose()?;
     let options = SolveOptions { nearest_later: true, ..arguments.read(robot, &asked, start, resolved)? };
     let core = watched(py, None, |watcher| ik::solve_tips(&robot.core, asked.values(), &options, watcher))?;
     let tips = tip_errors(robot, &asked, |_| TargetRow::from_slice(asked.values()), &options, &core.q)?;

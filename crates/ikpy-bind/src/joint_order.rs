@@ -55,14 +55,12 @@ pub fn rate_rows<'py>(
     rows: Option<usize>,
 ) -> PyResult<Numbers<'py>> {
     let array = ordered_numbers(robot, what, value)?;
-    let expected = match rows {
-        None => vec![robot.dof()],
-        Some(m) => vec![m, robot.dof()],
-    };
+    let (m, n, owner) = (rows.unwrap_or(0), robot.dof(), robot.name());
+    let expected: &[usize] = if rows.is_none() { &[n] } else { &[m, n] };
     if array.shape() == expected {
         return Ok(array);
     }
-    let (owner, expected, got) = (robot.name(), shape_text(&expected), shape_text(array.shape()));
+    let (expected, got) = (shape_text(expected), shape_text(array.shape()));
     Err(invalid(format!("{what} of robot '{owner}': expected shape {expected}, that of the joint angles, got {got}")))
 }
 

@@ -259,7 +259,7 @@ fn target_object<'py>(py: Python<'py>, target: &Target) -> PyResult<Bound<'py, P
     match target {
         Target::Position(position) => Ok(row(py, position.to_vec()).into_any()),
         Target::Pose(frame) | Target::Orientation(frame) | Target::Pointing { frame, .. } => {
-            Ok(pose_array(py, &(*frame).into())?.into_any())
+            Ok(pose_array(py, &(*frame).into()).into_any())
         }
     }
 }

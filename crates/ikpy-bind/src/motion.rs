@@ -15,31 +15,32 @@ use crate::trajectory::{PyTrajectory, names};
 
 /// Computes the fastest joint motion from one state to another; all joints arrive together.
 ///
-/// The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and qdd0 and
-/// qdd1 have no effect. A joint with velocity limits alone moves at constant velocity, and qd0 and qd1 have no effect. A
-/// joint that begins outside its velocity or acceleration limits, or about to leave them, first returns inside them as
-/// quickly as its limits allow. The joint that needs longest moves as fast as it can; the others spread their motion over
-/// the same time (Berscheid and Kroeger 2021 treat the same problem).
+/// The limits hold at every instant. With jerk limits the acceleration is continuous; without them it jumps, and
+/// start_qdd and end_qdd have no effect. A joint with velocity limits alone moves at constant velocity, and start_qd and
+/// end_qd have no effect. A joint that begins outside its velocity or acceleration limits, or about to leave them, first
+/// returns inside them as quickly as its limits allow. The joint that needs longest moves as fast as it can; the others
+/// spread their motion over the same time (Berscheid and Kroeger 2021 treat the same problem).
 ///
 /// Args:
-///     q0, q1: positions at the start and at the end (n,) (rad, m).
+///     start_q, end_q: positions at the start and at the end (n,) (rad, m).
 ///     limits: constant limits; each joint needs one of `velocity`, `acceleration` and `jerk`. Missing fields are unlimited.
-///     qd0, qd1: velocities (n,) (rad/s, m/s); None: zero.
-///     qdd0, qdd1: accelerations (n,) (rad/s^2, m/s^2); None: zero.
+///     start_qd, end_qd: velocities (n,) (rad/s, m/s); None: zero.
+///     start_qdd, end_qdd: accelerations (n,) (rad/s^2, m/s^2); None: zero.
 ///     joint_names: n names; None: "q1", "q2" and so on, or those of the robot.
 ///     robot: the arm whose joints these are: position and velocity limits left out are then its own, and joints that turn without
 ///         limits go the short way round.
-///     start_slack: how far q0 may be outside its position limits (rad, m), a number or (n,); the motion then begins there and goes
-///         inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
-///     end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of q1 nearest to q0; "as_given": at q1.
+///     start_slack: how far start_q may be outside its position limits (rad, m), a number or (n,); the motion then begins
+///         there and goes inside. None: 5 degrees, 5 mm for joints of the robot that slide. Rounding is taken off in any case.
+///     end_turns: "nearest": joints of the robot that turn without limits end at the whole turn of end_q nearest to start_q;
+///         "as_given": at end_q.
 ///
 /// Returns:
-///     A `Trajectory` of cubic segments. Its `start_outside` names the joints of q0 that it leads inside.
+///     A `Trajectory` of cubic segments. Its `start_outside` names the joints of start_q that it leads inside.
 ///
 /// Raises:
 ///     TypeError: limits that are no `Limits`.
 ///     InvalidInputError: wrong shape, NaN, limits that are not positive, or two equal states.
-///     LimitError: q0 farther outside its limits than start_slack, or q1 outside them.
+///     LimitError: start_q farther outside its limits than start_slack, or end_q outside them.
 ///     InfeasibleError: a final state that cannot be reached inside the limits, or a motion that would leave the position
 ///         limits.
 ///     UnsupportedLimit: limits that vary in time.
@@ -51,25 +52,25 @@ use crate::trajectory::{PyTrajectory, names};
 ///     >>> round(motion.duration, 3)
 ///     0.9
 #[pyfunction]
-#[pyo3(signature = (q0, q1, limits, *, qd0=None, qdd0=None, qd1=None, qdd1=None, joint_names=None, robot=None, start_slack=None,
-                    end_turns="nearest"))]
+#[pyo3(signature = (start_q, end_q, limits, *, start_qd=None, start_qdd=None, end_qd=None, end_qdd=None, joint_names=None,
+                    robot=None, start_slack=None, end_turns="nearest"))]
 #[allow(clippy::too_many_arguments)]
 pub fn state_to_state(
     py: Python<'_>,
-    q0: &Bound<'_, PyAny>,
-    q1: &Bound<'_, PyAny>,
+    start_q: &Bound<'_, PyAny>,
+    end_q: &Bound<'_, PyAny>,
     limits: &Bound<'_, PyAny>,
-    qd0: Option<&Bound<'_, PyAny>>,
-    qdd0: Option<&Bound<'_, PyAny>>,
-    qd1: Option<&Bound<'_, PyAny>>,
-    qdd1: Option<&Bound<'_, PyAny>>,
+    start_qd: Option<&Bound<'_, PyAny>>,
+    start_qdd: Option<&Bound<'_, PyAny>>,
+    end_qd: Option<&Bound<'_, PyAny>>,
+    end_qdd: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::optional_texts)] joint_names: Option<Vec<String>>,
     robot: Option<&PyRobot>,
     start_slack: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = crate::convert::text)] end_turns: &str,
 ) -> PyResult<PyTrajectory> {
-    let mut from = read_state(robot, ("q0", q0), [("qd0", qd0), ("qdd0", qdd0)])?;
-    let mut to = read_state(robot, ("q1", q1), [("qd1", qd1), ("qdd1", qdd1)])?;
+    let mut from = read_state(robot, ("start_q", start_q), [("start_qd", start_qd), ("start_qdd", start_qdd)])?;
+    let mut to = read_state(robot, ("end_q", end_q), [("end_qd", end_qd), ("end_qdd", end_qdd)])?;
     let (given, mut slack) = (required_limits(limits)?, read_slack(start_slack)?);
     let end_turns: EndTurns = end_turns.parse().map_err(raise)?;
     let limits = match robot {
@@ -78,11 +79,11 @@ pub fn state_to_state(
             return Err(invalid("robot has joint_names of its own: leave one out".into()));
         }
         Some(robot) => {
-            robot.core.check("q0", &from.q).and_then(|()| robot.core.check("q1", &to.q)).map_err(raise)?;
+            robot.core.check("start_q", &from.q).and_then(|()| robot.core.check("end_q", &to.q)).map_err(raise)?;
             let (_, resolved) = limits_of_call(py, Some(given), robot, &Sampling::once())?;
             let limits = resolved.unwrap_or_else(|| Limits::of(&robot.core));
-            from.q = limits.admit_start(Some(&robot.core), "q0", &from.q, &slack).map_err(raise)?.q;
-            to.q = limits.admit(Some(&robot.core), "q1", &to.q).map_err(raise)?;
+            from.q = limits.admit_start(Some(&robot.core), "start_q", &from.q, &slack).map_err(raise)?.q;
+            to.q = limits.admit(Some(&robot.core), "end_q", &to.q).map_err(raise)?;
             slack = StartSlack::any();
             if end_turns == EndTurns::Nearest {
                 limits.turn_near(&robot.core, &from.q, &mut to.q).map_err(raise)?;
@@ -92,7 +93,7 @@ pub fn state_to_state(
     };
     let core = motion::state_to_state_from(&from, &to, &limits, &slack).map_err(raise)?;
     // The motion was found, so its start is taken.
-    let led = limits.admit_start(robot.map(|robot| &*robot.core), "q0", &from.q, &slack).map_err(raise)?;
+    let led = limits.admit_start(robot.map(|robot| &*robot.core), "start_q", &from.q, &slack).map_err(raise)?;
     Ok(PyTrajectory::led(core, &led.outside))
 }
 

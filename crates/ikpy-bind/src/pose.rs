@@ -89,7 +89,7 @@ pub fn pose<'py>(
             return Err(invalid(format!("give one description of the orientation, got {names}")));
         }
     };
-    Ok(own(pose_array(py, &poses::checked("pose", made).map_err(raise)?)?))
+    Ok(own(pose_array(py, &poses::checked("pose", made).map_err(raise)?)))
 }
 
 fn finite(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {

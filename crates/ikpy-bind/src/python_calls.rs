@@ -84,6 +84,12 @@ pub fn misfit(argument: &str, value: &Bound<'_, PyAny>, error: &PyErr) -> PyResu
     call(py, "beetle_ik.calls.wording", "misfit", (argument, value, error.value(py)))?.extract()
 }
 
+/// Calls `beetle_ik.calls.renamed.renamed(call, keywords)`, which warns of deprecated keywords: the keywords under their
+/// new names; None if each has the name of today.
+pub fn renamed<'py>(call: &Bound<'py, PyAny>, keywords: &Bound<'py, PyDict>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    Ok(self::call(call.py(), "beetle_ik.calls.renamed", "renamed", (call, keywords))?.extract()?)
+}
+
 /// Calls `beetle_ik.calls.wording.worded(error, call, arguments, keywords)`, which words the error for arguments
 /// that do not fit.
 pub fn worded<'py>(

@@ -104,7 +104,7 @@ impl PySelfMotion {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
-///     start: (n,); curves are sorted by their distance from it. None: the longest curve comes first.
+///     start_q: (n,); curves are sorted by their distance from it. None: the longest curve comes first.
 ///     spacing: largest distance |q - q'| of consecutive configurations (rad, m), from 0.001 to 0.5.
 ///     limits: position limits; None: the robot's.
 ///     seed: seed of the random draws of a search; the same seed gives the same bits.
@@ -122,12 +122,12 @@ impl PySelfMotion {
 ///     >>> len(curves)
 ///     3
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, spacing=0.05, limits=None, seed=0))]
+#[pyo3(signature = (robot, target, *, start_q=None, spacing=0.05, limits=None, seed=0))]
 pub fn self_motion(
     py: Python<'_>,
     robot: &PyRobot,
     target: &Bound<'_, PyAny>,
-    start: Option<&Bound<'_, PyAny>>,
+    start_q: Option<&Bound<'_, PyAny>>,
     spacing: f64,
     limits: Option<&PyLimits>,
     seed: i128,
@@ -136,7 +136,7 @@ pub fn self_motion(
     let target = read_only("target", robot, target, read_target)?;
     units::doubt(units::of_target(&robot.core, "target", Subject::Tip(0), &target))?;
     let (_, limits) = limits_of_call(py, limits, robot, &Sampling::once())?;
-    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
+    let start = start_q.map(|q| joint_vector(&robot.core, "start_q", q)).transpose()?;
     let options = SelfMotionOptions { start, spacing, limits, seed: count("seed", seed)? };
     let curves = watched(py, None, |watcher| ik::self_motion(&robot.core, &target, &options, watcher))?;
     let names: Vec<String> = robot.core.joints().iter().map(|joint| joint.name.clone()).collect();

@@ -187,7 +187,7 @@ impl Unreached {
 /// Args:
 ///     robot: the arm.
 ///     target: pose (4, 4), or position (3,) (m).
-///     start: (n,), a hint as in `solve`; solutions are sorted by |q - start| (rad, m). None: they are returned in the order found.
+///     start_q: (n,), a hint as in `solve`; solutions are sorted by |q - start_q| (rad, m). None: they are returned in the order found.
 ///     limit: largest number of solutions to return. None: all of a closed form, 16 of a search.
 ///     separation: two solutions are distinct if some joint differs by at least this much (rad, m), modulo whole turns. None: all of
 ///         a closed form are returned, those of a search differ by 0.1.
@@ -222,16 +222,16 @@ impl Unreached {
 ///     >>> len(solutions), solutions.complete
 ///     (8, True)
 #[pyfunction]
-#[pyo3(signature = (robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
+#[pyo3(signature = (robot, target, *, start_q=None, limit=None, separation=None, redundancy=16, turns=false, task=None, solver=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), limits=None,
                     obstacles=None, margin=None, self_collision=None, stop=None, seed=0),
-       text_signature = "(robot, target, *, start=None, limit=None, separation=None, redundancy=16, turns=False, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
+       text_signature = "(robot, target, *, start_q=None, limit=None, separation=None, redundancy=16, turns=False, task=None, solver=None, position_tolerance=1e-06, rotation_tolerance=1e-06, limits=None, obstacles=None, margin=None, self_collision=None, stop=None, seed=0)")]
 #[allow(clippy::too_many_arguments)]
 pub fn solve_all(
     py: Python<'_>,
     robot: &Bound<'_, PyRobot>,
     target: &Bound<'_, PyAny>,
-    start: Option<&Bound<'_, PyAny>>,
+    start_q: Option<&Bound<'_, PyAny>>,
     limit: Option<i128>,
     separation: Option<f64>,
     redundancy: i128,
@@ -265,7 +265,7 @@ pub fn solve_all(
         stop,
         seed,
     };
-    let start = start.map(|start| joint_vector(&robot.core, "start", start)).transpose()?;
+    let start = start_q.map(|q| joint_vector(&robot.core, "start_q", q)).transpose()?;
     let each = arguments.read(robot, &asked, start, resolved)?;
     let limit = limit.map(|limit| count("limit", limit)).transpose()?;
     let redundancy = count("redundancy", redundancy)?;

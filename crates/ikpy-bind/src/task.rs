@@ -48,8 +48,8 @@ impl PyTask {
 
     /// Pose of the tool in the frame of the tip (4, 4); None: the tip itself.
     #[getter]
-    fn tool<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        self.core.tool.as_ref().map(|tool| pose_array(py, tool)).transpose()
+    fn tool<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
+        self.core.tool.as_ref().map(|tool| pose_array(py, tool))
     }
 
     /// Lower and upper corner of the box that the tip stays in (2, 3) (m); None: no box.
@@ -96,7 +96,7 @@ impl PyTask {
         }
         options.set_item("weights", self.weights(py))?;
         options.set_item("tolerance", self.tolerance(py))?;
-        options.set_item("tool", self.tool(py)?)?;
+        options.set_item("tool", self.tool(py))?;
         options.set_item("region", self.region(py)?)?;
         if let Some(first) = self.core.first {
             options.set_item("first", first.name())?;

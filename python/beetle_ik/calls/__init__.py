@@ -4,6 +4,7 @@ arguments   checks of arguments
 labelled    numbers with names: messages, dicts, tables
 wording     errors of arguments that do not fit, with the argument, its value and what is expected
 names       suggestions for misspelt names
+renamed     keywords under their old names, which warn
 text        counts and lists in messages, numbers that read back
 units       warnings about units
 progress    the progress bar, and the argument `progress`

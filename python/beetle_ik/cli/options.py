@@ -59,7 +59,6 @@ Trusted = Annotated[
         rich_help_panel=_ROBOT,
     ),
 ]
-Start = Annotated[str | None, typer.Option(help="Joint positions to start from: q1,q2,...")]
 JointWeights = Annotated[
     str | None,
     typer.Option(help="Cost of moving each joint: w1,w2,...; heavy joints move where the others cannot do it."),

@@ -46,7 +46,7 @@ def listed(values: Iterable[float]) -> str:
 
 
 def as_argument(values: Iterable[float]) -> str:
-    """Formats numbers for options like --q and --start, with ten digits."""
+    """Formats numbers for options like --q and --start-q, with ten digits."""
     return ",".join(_decimal(value, digits=10) for value in values)
 
 

@@ -18,7 +18,7 @@ from .options import (
     SceneFile,
     Seed,
     SolverName,
-    Start,
+    StartQ,
     TipLinks,
     Trusted,
     UrdfFile,
@@ -42,7 +42,7 @@ def solve(
         typer.Option(help="Target of one of several tips: tip=x,y,z or tip=x,y,z,roll,pitch,yaw; give one for each."),
     ] = None,
     first: First = None,
-    start: Start = None,
+    start_q: StartQ = None,
     joint_weights: JointWeights = None,
     solver: Annotated[
         SolverName | None, typer.Option(help="Default: the closed form, else Levenberg-Marquardt from many starts.")
@@ -67,7 +67,7 @@ def solve(
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     wanted = _wanted(position, rpy, target)
     options: dict[str, Any] = {
-        "start": None if start is None else numbers("--start", start),
+        "start_q": None if start_q is None else numbers("--start-q", start_q),
         "obstacles": None if scene is None else Scene.load(scene),
         "margin": margin,
         "solver": None if solver is None else make_solver(solver),

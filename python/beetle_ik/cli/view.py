@@ -11,7 +11,7 @@ from .options import (
     LinkRadius,
     RobotName,
     SceneFile,
-    Start,
+    StartQ,
     TipLinks,
     Trusted,
     UrdfFile,
@@ -23,7 +23,7 @@ from .options import (
 def view(
     robot: RobotName = None,
     *,
-    start: Start = None,
+    start_q: StartQ = None,
     scene: SceneFile = None,
     link_radius: LinkRadius = None,
     host: Annotated[
@@ -38,7 +38,7 @@ def view(
     """Show a robot in the browser: drag its tip, its joints and obstacles. Ctrl-C ends it."""
     viewer = view_robot(
         _loaded(robot, urdf, base, tip, link_radius, trusted=trusted),
-        None if start is None else numbers("--start", start),
+        None if start_q is None else numbers("--start-q", start_q),
         obstacles=None if scene is None else Scene.load(scene),
         host=host,
         port=port,

@@ -98,7 +98,7 @@ def solve_batch(
     store: str | os.PathLike[str] | None = None,
     rows_per_chunk: int = 32768,
     any_instruction_set: bool = False,
-    starts: ArrayLike | None = None,
+    start_q: ArrayLike | None = None,
     threads: int | None = None,
     on_invalid: Literal["raise", "skip"] = "raise",
     progress: _Progress = None,
@@ -131,7 +131,7 @@ def solve_batch(
             in memory.
         rows_per_chunk: targets of a chunk, which is one task and one chunk of each array of the store.
         any_instruction_set: whether workers may differ in their instruction set, and so in the last bits of results.
-        starts: as for `bik.solve_batch`.
+        start_q: as for `bik.solve_batch`.
         threads: number of threads if `client` is None; None: one per core. Workers compute a chunk in each thread.
         on_invalid: as for `bik.solve_batch`; "raise" raises when the chunk of the row is computed.
         progress: True shows a progress bar; a callable is called with (done, total) after each chunk.
@@ -180,12 +180,12 @@ def solve_batch(
     }
     keys = tuple(targets) if isinstance(targets, Mapping) else None
     inputs = [_array("targets", part) for part in (targets.values() if isinstance(targets, Mapping) else [targets])]
-    all_starts = None if starts is None else _array("starts", starts)
+    all_starts = None if start_q is None else _array("start_q", start_q)
     each_starts = all_starts is not None and all_starts.ndim == 2
     if each_starts:
         inputs.append(all_starts)
     else:
-        options["starts"] = all_starts
+        options["start_q"] = all_starts
     rows = _row_count(inputs, each_starts)
     solve = partial(_solve_rows, robot, keys, options)
     # Checks all other arguments in the core, by a batch without targets.
@@ -216,7 +216,7 @@ def _solved(
     """Solves targets: the first inputs are the targets of each key, and a further input is their starts."""
     count = 1 if keys is None else len(keys)
     targets = inputs[0] if keys is None else dict(zip(keys, inputs, strict=False))
-    starts = {"starts": inputs[count]} if len(inputs) > count else {}
+    starts = {"start_q": inputs[count]} if len(inputs) > count else {}
     return _core.solve_batch(robot, targets, first_row=first_row, threads=threads, **options, **starts)
 
 
@@ -270,7 +270,7 @@ def _row_count(inputs: Sequence[Any], starts: bool) -> int:
     """Returns the number of targets, which must agree for all tips and for the starts, the last input."""
     rows: int = inputs[0].shape[0] if inputs else 0
     for i, array in enumerate(inputs):
-        what = "starts" if starts and i == len(inputs) - 1 else "targets"
+        what = "start_q" if starts and i == len(inputs) - 1 else "targets"
         if what == "targets" and array.shape[1:] not in ((3,), (4, 4)):
             shape = f"({array.shape[0]},)" if array.ndim == 1 else f"({', '.join(map(str, array.shape))})"
             raise InvalidInputError(f"targets: expected poses (m, 4, 4) or positions (m, 3), got shape {shape}")

@@ -6,6 +6,7 @@ It is computed from the poses of the links alone, so it is the same for Denavit-
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,12 +48,12 @@ class Axis:
 
 @dataclass
 class Part:
-    """Links that move as one.
+    """Links that move as one. What a mimic joint moves is a part of its own.
 
     Attributes:
         links: their names.
         axis: the axis about which the part moves; None for a fixed part, or a part that several joints move at once.
-            after: the parts that move relative to this part.
+        after: the parts that move relative to this part.
         ends: pairs of poses (4, 4) for each tip link on the part: of the link, and of its tip, which a tool moves.
         distance: length of the skeleton from the base to the part (m).
     """
@@ -84,41 +85,69 @@ class Part:
 
 def skeleton(robot: Robot, q: Array) -> tuple[list[Part], Array]:
     """Returns the parts at the root of the robot at `q` (n,), and the poses of all links (links, 4, 4)."""
-    poses = robot.all_link_poses(q)
-    steps = np.where(q + _TURN <= robot.upper, _TURN, -_TURN)
-    shifted = [robot.all_link_poses(q + steps * (np.arange(robot.dof) == j)) for j in range(robot.dof)]
-    moves = np.array([np.abs(other - poses).max(axis=(1, 2)) > _MOVED for other in shifted]).reshape(-1, len(poses))
-    parts: dict[frozenset[int], Part] = {}
-    for i, link in enumerate(robot.all_link_names):
-        movers = frozenset(np.flatnonzero(moves[:, i]).tolist())
-        parts.setdefault(movers, Part([], None)).links.append(link)
-    first = {link: i for i, link in enumerate(robot.all_link_names)}
-    roots = []
-    for movers, part in sorted(parts.items(), key=lambda item: len(item[0])):
-        before, joint = next(((parts[movers - {j}], j) for j in sorted(movers) if movers - {j} in parts), (None, -1))
-        if before is None:
-            roots.append(part)
-            continue
-        i = first[part.links[0]]
-        travel = (robot.lower[joint] - q[joint], robot.upper[joint] - q[joint])
-        part.axis = _axis(poses[i], shifted[joint][i], steps[joint], travel)
-        before.after.append(part)
+    moved = _Displacements(robot, q)
+    parts: list[Part] = []
+    part_of: dict[str, Part] = {}
+    for link in robot.all_link_names:
+        part = next((each for each in parts if not moved.between(each.links[0], link)), None)
+        if part is None:
+            parts.append(part := Part([], None))
+        part.links.append(link)
+        part_of[link] = part
+    placed: list[Part] = []
+    for way in robot._links_to_tips():
+        for previous, link in pairwise(way):
+            before, part = part_of[previous], part_of[link]
+            joints = moved.between(before.links[0], part.links[0])
+            if part is before or part in placed or len(joints) != 1:  # several joints: as of a mobile base
+                continue
+            part.axis = moved.axis(before.links[0], part.links[0], joints[0])
+            before.after.append(part)
+            placed.append(part)
     for tip, pose in zip(robot.tips, robot.fk(q).reshape(-1, 4, 4), strict=True):
-        next(part for part in parts.values() if tip in part.links).ends.append((poses[first[tip]], pose))
+        part_of[tip].ends.append((moved.pose(tip), pose))
+    roots = [part for part in parts if part not in placed]
     for root in roots:
-        _run(root, poses[first[root.links[0]]][:3, 3])
-    return [root for root in roots if root.after], poses
+        _run(root, moved.pose(root.links[0])[:3, 3])
+    return [root for root in roots if root.after], moved.poses
 
 
-def _axis(before: Array, after: Array, step: float, travel: tuple[float, float]) -> Axis:
-    """Returns the axis of a joint whose step (rad, m) moves a frame from pose `before` (4, 4) to pose `after`."""
-    motion = after @ np.linalg.inv(before)
-    turn, shift = motion[:3, :3], motion[:3, 3]
-    along = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-    if np.linalg.norm(along) < _MOVED:
-        return Axis(np.asarray(shift / step, dtype=np.float64), before[:3, 3], travel)
-    point: Array = np.linalg.lstsq(np.eye(3) - turn, shift, rcond=1e-9)[0].astype(np.float64)
-    return Axis(along / (2 * np.sin(step)), point, None)
+class _Displacements:
+    """Poses of all links, at one configuration and after a step of each joint."""
+
+    def __init__(self, robot: Robot, q: Array) -> None:
+        self._robot, self._q = robot, q
+        self._steps = np.where(q + _TURN <= robot.upper, _TURN, -_TURN)
+        self._index = {link: i for i, link in enumerate(robot.all_link_names)}
+        self.poses: Array = robot.all_link_poses(q)
+        shifted = [robot.all_link_poses(q + row) for row in np.diag(self._steps)]
+        self._shifted = np.array(shifted).reshape(-1, *self.poses.shape)
+
+    def pose(self, link: str) -> Array:
+        """Returns the pose (4, 4) of a link before any step."""
+        return np.asarray(self.poses[self._index[link]])
+
+    def between(self, link: str, other: str) -> list[int]:
+        """Returns the joints that move a link relative to another one, by themselves or by mimic joints."""
+        i, j = self._index[link], self._index[other]
+        apart = np.linalg.inv(self._shifted[:, i]) @ self._shifted[:, j] - np.linalg.inv(self.poses[i]) @ self.poses[j]
+        return [int(joint) for joint in np.flatnonzero(np.abs(apart).max(axis=(1, 2), initial=0.0) > _MOVED)]
+
+    def axis(self, link: str, other: str, joint: int) -> Axis:
+        """Returns the axis about which a joint, or a mimic joint that follows it, moves `other` relative to `link`."""
+        i, j = self._index[link], self._index[other]
+        before, step = self.poses[j], self._steps[joint]
+        after = self.poses[i] @ np.linalg.inv(self._shifted[joint, i]) @ self._shifted[joint, j]
+        motion = after @ np.linalg.inv(before)
+        turn, shift = motion[:3, :3], motion[:3, 3]
+        along = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+        if np.linalg.norm(along) < _MOVED:
+            way = float(np.linalg.norm(shift))
+            ends = (self._robot.lower[joint], self._robot.upper[joint])
+            low, high = (float(end - self._q[joint]) * way / abs(step) for end in ends)
+            return Axis(shift / way * np.sign(step), before[:3, 3], (low, high))
+        point: Array = np.linalg.lstsq(np.eye(3) - turn, shift, rcond=1e-9)[0].astype(np.float64)
+        return Axis(along / np.linalg.norm(along) * np.sign(step), point, None)
 
 
 def _run(part: Part, start: Array) -> None:

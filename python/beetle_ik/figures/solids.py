@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .._core import Robot
 
     Array = NDArray[np.float64]
+    Finger = tuple[Array, Array, float]
+    """Ends (3,) of the axis of a capsule (m), the one nearer to the flange first, and its radius (m)."""
 
 _THICK, _THIN = 0.042, 0.030  # radii at base and tip, as fractions of the length of the skeleton
 _AROUND = 24  # corners of a circle
@@ -73,7 +75,7 @@ def solids(robot: Robot, q: Array) -> list[Solid]:
         return []
     look = next((each for name, each in _MAKERS.items() if robot.name.startswith(name)), _USUAL)
     frames = dict(zip(robot.all_link_names, poses, strict=True))
-    drawn = _Drawing(look, length, frames)
+    drawn = _Drawing(look, length, frames, robot.capsules)
     for root in roots:
         drawn.base(root)
         for part in _all(root.after):
@@ -88,9 +90,11 @@ def _all(parts: list[Part]) -> list[Part]:
 class _Drawing:
     """Solids of the parts of one robot."""
 
-    def __init__(self, look: Look, length: float, frames: dict[str, Array]) -> None:
+    def __init__(
+        self, look: Look, length: float, frames: dict[str, Array], capsules: list[tuple[str, Array, Array, float]]
+    ) -> None:
         self.solids: list[Solid] = []
-        self._look, self._length, self._frames = look, length, frames
+        self._look, self._length, self._frames, self._capsules = look, length, frames, capsules
 
     def base(self, part: Part) -> None:
         """Draws a fixed part: a foot, and columns up to the axes."""
@@ -157,7 +161,49 @@ class _Drawing:
         if self._is_flange(part) and part.axis is not None and part.stub:
             along = (part.axis.leave - part.axis.enter) / part.stub
             self._rod(part, flange - 0.35 * r * along, flange, 0.85 * r, _DARK, edge=0.08)
-        self._rod(part, flange, tip[:3, 3], (0.45 * r, 0.15 * r), _DARK, edge=0.14)
+        self._tool(part, flange, tip[:3, 3], r)
+
+    def _tool(self, part: Part, flange: Array, tip: Array, r: float) -> None:
+        """Draws a tool that ends in a point, or the gripper that the bodies of the model make about the tip."""
+        fingers = self._fingers(part, flange, tip)
+        if not fingers:
+            self._rod(part, flange, tip, (0.45 * r, 0.15 * r), _DARK, edge=0.14)
+            return
+        length = float(np.linalg.norm(tip - flange))
+        along = (tip - flange) / length
+        begin = min(float((start - flange) @ along) for start, _, _ in fingers)
+        first = fingers[0][0] - flange
+        aside = first - along * (first @ along)
+        across = aside / np.linalg.norm(aside)
+        reach = max(abs(float((start - flange) @ across)) + radius for start, _, radius in fingers)
+        palm = max(begin - 1.2 * r, 0.0)
+        self._rod(part, flange, flange + palm * along, 0.5 * r, self._look.joints)
+        thin = max(radius for _, _, radius in fingers)
+        corner = np.sqrt(2.0)  # a rod with four corners is that much thinner between them
+        self._rod(
+            part, flange + palm * along, flange + (begin + thin) * along, 1.6 * corner * thin, self._look.joints,
+            edge=0.2, around=4, wider=(across, (reach + 0.5 * thin) / (1.6 * thin)),
+        )  # fmt: skip
+        for start, end, radius in fingers:
+            self._rod(part, start, end, radius, _DARK, edge=0.8)
+
+    def _fingers(self, part: Part, flange: Array, tip: Array) -> list[Finger]:
+        """Returns the capsules of a part that lie beyond the flange and beside the line to the tip."""
+        length = float(np.linalg.norm(tip - flange))
+        if length < _SHORTEST:
+            return []
+        along = (tip - flange) / length
+        found = []
+        for link, start, end, radius in self._capsules:
+            if link not in part.links or not radius:
+                continue
+            frame = self._frames[link]
+            ends = [frame[:3, :3] @ each + frame[:3, 3] - flange for each in (start, end)]
+            beside = min(float(np.linalg.norm(each - along * (each @ along))) for each in ends)
+            if min(float(each @ along) for each in ends) > 0.0 and beside > radius:
+                ends.sort(key=lambda each: float(each @ along))
+                found.append((ends[0] + flange, ends[1] + flange, float(radius)))
+        return found
 
     def _radius(self, part: Part) -> float:
         share = min(part.distance / self._length, 1.0)
@@ -183,8 +229,12 @@ class _Drawing:
         *,
         edge: float = 0.2,
         around: int = _AROUND,
+        wider: tuple[Array, float] | None = None,
     ) -> None:
-        """Draws a rod between two points, its edges rounded by a fraction `edge` of the radius; none if it is short."""
+        """Draws a rod between two points, its edges rounded by a fraction `edge` of the radius; none if it is short.
+
+        `wider` is a direction across the rod, and by how much the rod is wider in that direction.
+        """
         first, last = radius if isinstance(radius, tuple) else (radius, radius)
         length = float(np.linalg.norm(end - start))
         if length < 0.1 * min(first, last) and length < 0.02 * self._length * _THIN:
@@ -195,6 +245,12 @@ class _Drawing:
         turn, origin = frame[:3, :3], frame[:3, 3]
         vertices, normals, faces = _revolved(profile, around)
         place = _upright(along)
+        if wider is not None:
+            side, stretch = wider
+            place = np.column_stack((side, np.cross(along, side), along))
+            vertices[:, 0] *= stretch
+            normals[:, 0] /= stretch
+            normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         vertices = (vertices @ place.T + start - origin) @ turn
         self.solids.append(Solid(part.links[0], color, vertices, normals @ place.T @ turn, faces))
 

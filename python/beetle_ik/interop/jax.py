@@ -101,13 +101,13 @@ def solve(robot: Robot, *, damping: float = 1e-4, success: bool = False) -> Call
     damping = checks.damping_of(damping)
     _jax()
 
-    def apply(target: Array, start: Array | None = None) -> Any:
+    def apply(target: Array, start_q: Array | None = None) -> Any:
         target = _floating(target)
         rows, _ = checks.rows_of_target(target.shape, robot)
-        if start is None:
+        if start_q is None:
             found = _solve(robot, rows, damping, False)(target)
         else:
-            found = _solve(robot, rows, damping, True)(target, _joints("start", start, robot))
+            found = _solve(robot, rows, damping, True)(target, _joints("start_q", start_q, robot))
         return found if success else found[0]
 
     return apply

@@ -176,7 +176,7 @@ class RobotKinematics:
 
     def _better(self, near: Step, target: Array) -> Solution | Step:
         """Returns the solution of a search where that is much nearer to the target, or at the same place."""
-        found = solve(self.robot, target, task=self._task, start=near.q)
+        found = solve(self.robot, target, task=self._task, start_q=near.q)
         if found.success or np.abs(found.q - near.q).max() < _SAME_PLACE:
             return found
         gains = np.array([near.position_error - found.position_error, near.rotation_error - found.rotation_error])

@@ -39,7 +39,7 @@ class Retargeter:
     def __init__(
         self,
         robot: Robot,
-        start: ArrayLike,
+        start_q: ArrayLike,
         points: Mapping[str, str],
         *,
         dt: float,
@@ -57,7 +57,7 @@ class Retargeter:
                 raise InvalidInputError(f"weights: the weight of '{name}' must be positive, got {weight:g}")
             # Weights of a task multiply the errors, not their squares.
             task[tip] = tasks.Position(weights=np.full(3, np.sqrt(weight)), level=int((levels or {}).get(name, 0)))
-        self.tracker = Tracker(robot, start, dt=dt, task=task, **options)
+        self.tracker = Tracker(robot, start_q, dt=dt, task=task, **options)
         self.scale = 1.0
         """Ratio of the robot's measures to the human's."""
         self.transform = np.eye(4)

@@ -46,7 +46,7 @@ class TwistTracker:
     def __init__(
         self,
         robot: Robot,
-        start: ArrayLike,
+        start_q: ArrayLike,
         *,
         dt: float,
         frame: Literal["base", "tip"] = "base",
@@ -58,7 +58,7 @@ class TwistTracker:
             raise InvalidInputError(f"frame must be 'base' or 'tip', got {frame!r:.60}")
         if not (isinstance(timeout, int | float) and timeout > 0.0):
             raise InvalidInputError(f"timeout must be positive (s), got {timeout!r:.60}")
-        self.tracker = Tracker(robot, start, dt=dt, **{"recover": False, **options})
+        self.tracker = Tracker(robot, start_q, dt=dt, **{"recover": False, **options})
         if len(robot.tips) > 1:
             raise InvalidInputError(f"a TwistTracker moves one tip, and the robot has {len(robot.tips)}")
         self._frame, self._timeout = frame, timeout

@@ -95,10 +95,10 @@ def solve(robot: Robot, *, damping: float = 1e-4, success: bool = False) -> Call
     damping = checks.damping_of(damping)
     _torch()
 
-    def apply(target: Tensor, start: Tensor | None = None) -> Any:
+    def apply(target: Tensor, start_q: Tensor | None = None) -> Any:
         target = _floating(target)
         rows, axes = checks.rows_of_target(target.shape, robot)
-        given = (target,) if start is None else (target, _joints("start", start, robot))
+        given = (target,) if start_q is None else (target, _joints("start_q", start_q, robot))
         found = _apply(_solving(robot, rows, damping, (axes, 1)[: len(given)]), *given)
         return (found[..., :-1], found[..., -1] > 0.5) if success else found[..., :-1]
 

@@ -1,5 +1,6 @@
 """Interactive view of a robot in the browser: `beetle_ik.view`, on viser.
 
+    opening     the call `view`
     viewer      the public class: joins the parts below, and answers Python
     checks      checks of its arguments
     turns       changes of the state by its thread and by Python, one at a time
@@ -27,7 +28,8 @@
 viser calls back in the thread of its server. A part of the page never moves the arm there: it asks the worker.
 """
 
+from .opening import view
 from .recording import write_player
-from .viewer import Viewer, view
+from .viewer import Viewer
 
 __all__ = ["Viewer", "view", "write_player"]

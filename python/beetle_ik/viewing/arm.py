@@ -181,7 +181,7 @@ class Arm:
 
     def solve(self) -> None:
         """Puts the arm at a solution, or as near to the target as it gets, unless it would collide there."""
-        found = solve(self.robot, self.goal, task=self.task, start=self.inside, obstacles=self.avoided, stop=QUICKLY)
+        found = solve(self.robot, self.goal, task=self.task, start_q=self.inside, obstacles=self.avoided, stop=QUICKLY)
         self.outcome, self.rates = found, ()
         self._tracker, self.moves = None, False
         # Tests the solution: a target out of reach is approached regardless of obstacles.

@@ -66,7 +66,7 @@ class Postures:
 
     def _show_all(self) -> None:
         arm = self._page.arm
-        found = solve_all(arm.robot, arm.goal, task=arm.task, start=arm.inside, obstacles=arm.avoided, stop=QUICKLY)
+        found = solve_all(arm.robot, arm.goal, task=arm.task, start_q=arm.inside, obstacles=arm.avoided, stop=QUICKLY)
         proven = f" No other is inside the limits{' and clear' if arm.keeps_clear else ''}." if found.complete else ""
         self.show_ghosts(found.q, f"{counted(len(found), 'solution')}.{proven}" if len(found) else found.message)
 
@@ -76,7 +76,7 @@ class Postures:
 
     def _find_self_motion(self) -> None:
         arm = self._page.arm
-        curves = self_motion(arm.robot, arm.goal, start=arm.inside)
+        curves = self_motion(arm.robot, arm.goal, start_q=arm.inside)
         if not curves:
             self._text.content = "The target is not reached: no self-motion."
             return

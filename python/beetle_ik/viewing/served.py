@@ -29,7 +29,7 @@ _POLICY = (
 """Pages that may embed this one: notebooks. Sources that it may load from: viser's client would otherwise play a
 recording of, or obey, any site in its address."""
 
-_replacing = threading.Lock()
+_replacing, _quieting = threading.Lock(), threading.Lock()
 
 
 def serve(host: str, port: int, label: str, admission: Admission) -> viser.ViserServer:
@@ -40,13 +40,19 @@ def serve(host: str, port: int, label: str, admission: Admission) -> viser.Viser
     """
     module = library("viser", "viser", "the viewer", extra="view")
     incoming = Incoming()
-    with _replaced_serve(host, port, partial(_serve, admission, incoming)) as used:
+    with _quiet(), _replaced_serve(host, port, partial(_serve, admission, incoming)) as used:
         server: viser.ViserServer = module.ViserServer(host=host, port=port, label=label, verbose=False)
     if not used or server.get_port() != port:
-        server.stop()
+        stop(server)
         raise BeetleIkError(f"viser {module.__version__} does not serve at port {port} as it was asked to: try again")
     incoming.server = server
     return server
+
+
+def stop(server: viser.ViserServer) -> None:
+    """Ends a server and its threads."""
+    with _quiet():
+        server.stop()
 
 
 def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: Any, **options: Any) -> Any:
@@ -88,6 +94,25 @@ def _serve(admission: Admission, incoming: Incoming, original: Any, *arguments: 
 
     options |= {"max_size": _LARGEST, "create_connection": Checked}
     return original(*arguments, process_request=process_request, **options)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Leaves out what viser prints as it starts and stops: its addresses lack the token, and `Viewer` names its own."""
+    rich: Any = import_module("rich")
+    with _quieting:
+        original = rich.print
+
+        def others(*objects: Any, **options: Any) -> None:
+            said = (each if isinstance(each, str) else getattr(each, "title", "") for each in objects)
+            if not any("viser" in str(each) for each in said):
+                original(*objects, **options)
+
+        rich.print = others
+        try:
+            yield
+        finally:
+            rich.print = original
 
 
 @contextmanager

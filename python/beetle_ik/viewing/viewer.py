@@ -1,4 +1,4 @@
-"""The Python interface of the viewer."""
+"""The viewer as Python sees it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Self
 
 from .._core import BeetleIkError, InvalidInputError, Obstacle, Robot
 from ..calls.arguments import require
-from ..calls.wording import worded_call
 from ..installed.needs import library
 from ..scenes import Scene, obstacles_for
 from . import start
@@ -21,7 +20,7 @@ from .looks import drawn_looks, looks
 from .page import Page
 from .parts import Parts
 from .recording import recording_file, take, write_recording
-from .served import serve
+from .served import serve, stop
 from .turns import Turns
 
 if TYPE_CHECKING:
@@ -40,51 +39,6 @@ if TYPE_CHECKING:
 
 _NOTEBOOK_HEIGHT = 600  # pixels
 _WAKE = 0.1  # s: interval of checks for Ctrl-C, which does not wake a waiting thread on Windows
-
-
-@worded_call
-def view(
-    robot: Robot,
-    q: ArrayLike | None = None,
-    *,
-    obstacles: Iterable[Obstacle] | None = None,
-    path: Path | ArrayLike | None = None,
-    host: str = "127.0.0.1",
-    port: int = 8080,
-    block: bool = False,
-) -> Viewer:
-    """Shows a robot in the browser, where its tip, its joints and obstacles can be dragged. Needs the extra "view".
-
-    The arm follows the handle at its tip like `Tracker`: within its limits, and certified clear of obstacles and of
-    itself. A robot with several tips has a handle for each. The page has sliders for the joints, shows all solutions
-    and the self-motion, and plays motions back. Links show the meshes of `robot.visuals` whose files are found,
-    otherwise their collision meshes or bodies; a robot without bodies gets capsules along its links. In a notebook the
-    viewer appears inline.
-
-    Args:
-        robot: the robot.
-        q: joint positions (n,) to begin at (rad, m); None: the stance "ready" of an SRDF, or a bent and clear
-            configuration near the middle of the limits.
-        obstacles: obstacles of `bik.obstacles`, or a `Scene`, in the frame of the robot's base.
-        path: a path to draw: one of `bik.paths`, positions (k, 3) (m) or poses (k, 4, 4).
-        host: the address at which the page is served. "127.0.0.1": this machine alone; "0.0.0.0": everyone who reaches
-            it and knows the token, which is part of the address.
-        port: the port; if it is in use, the next free one. 0: any.
-        block: whether to wait until Ctrl-C, which closes the viewer.
-
-    Returns:
-        A `Viewer`; `viewer.url` is the address of the page.
-
-    Raises:
-        BeetleIkError: viser is not installed.
-        InvalidInputError: wrong shape, NaN, or a host or port that cannot be used.
-        LimitError: a configuration outside the limits.
-    """
-    require("block", block, bool)
-    viewer = Viewer(robot, q, obstacles=obstacles, path=path, host=host, port=port)
-    if block:
-        viewer.wait()
-    return viewer
 
 
 class Viewer:
@@ -122,8 +76,7 @@ class Viewer:
         port, admission = free_port(host, port), Admission(host)
         self.server: viser.ViserServer = serve(host, port, robot.name, admission)
         self.url = admission.address(host, port)
-        if admission.token is not None:
-            print(f"Other machines reach this viewer: {self.url}")
+        print(f"{'Viewer' if admission.token is None else 'Viewer, which other machines reach'}: {self.url}")
         self._arm = Arm(self.robot, begin, scene)
         self._turns = Turns(self.robot.name, self._arm)
         self._records = False
@@ -134,7 +87,7 @@ class Viewer:
                 self._parts.draw_path(line)
             self._turns.start(self._parts)
         except BaseException:  # Ctrl-C too
-            self.server.stop()
+            stop(self.server)
             raise
         atexit.register(self.close)
 
@@ -286,7 +239,7 @@ class Viewer:
         """Ends the page and its threads. A closed viewer keeps its state; a second call does nothing."""
         if self._turns.end():
             atexit.unregister(self.close)
-            self.server.stop()
+            stop(self.server)
 
     def _repr_html_(self) -> str:
         """Shows the page inline in a notebook."""

@@ -88,7 +88,7 @@ class CheapPostures(Attack):
             f"qs = robot.clip(np.array({arms.configurations(joints).tolist()}))\n"
             f"goal = bik.goals.LeastTorque(relative_to=[{scale}], weight={case['weight']!r})\n"
             "task, places = bik.tasks.Position(), robot.fk(qs)[:, :3, 3]\n"
-            "found = [bik.solve(robot, p, task=task, start=q, goals=goal) for p, q in zip(places, qs)]"
+            "found = [bik.solve(robot, p, task=task, start_q=q, goals=goal) for p, q in zip(places, qs)]"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -143,7 +143,7 @@ class CentersOfMass(Attack):
             f"center = robot.center_of_mass(q) + np.array({list(case['offset'])})\n"
             f"task = {{'center_of_mass': bik.tasks.Position(weights={case['weights']}, level={case['level']})}}\n"
             f"targets = {{{tips[0]!r}: robot.fk(q)[0, :3, 3], 'center_of_mass': center}}\n"
-            f"found = bik.solve(robot, targets, task=task, start=robot.clip({start}))"
+            f"found = bik.solve(robot, targets, task=task, start_q=robot.clip({start}))"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:

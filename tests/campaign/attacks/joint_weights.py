@@ -10,8 +10,8 @@ from .. import arms
 from ..attack import Attack, BrokenError, Case
 from .solving import ROUNDING, TOLERANCE
 
-PROGRAM = """solution = bik.solve(robot, target, start=start, joint_weights=weights)
-plain = bik.solve(robot, target, start=start)
+PROGRAM = """solution = bik.solve(robot, target, start_q=start, joint_weights=weights)
+plain = bik.solve(robot, target, start_q=start)
 limits = bik.Limits(velocity=1.0)
 trackers = [bik.Tracker(robot, start, dt=0.01, limits=limits, joint_weights=one) for one in (weights, None)]
 ends = []

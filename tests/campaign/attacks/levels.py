@@ -64,7 +64,7 @@ class Levels(Attack):
             f"{tip!r}: bik.tasks.{kind}(level={level})"
             for tip, kind, level in zip(tips, case["kinds"], case["levels"], strict=True)
         )
-        start = ", start=np.clip(np.zeros(robot.dof), robot.lower, robot.upper)" if case["begin"] else ""
+        start = ", start_q=np.clip(np.zeros(robot.dof), robot.lower, robot.upper)" if case["begin"] else ""
         branches = [*case["shared"], *case["left"]], case["right"]
         return (
             f"{arms.written(*branches, tips=f', tip={list(tips)}')}"

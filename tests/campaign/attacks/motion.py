@@ -91,7 +91,7 @@ class StateToState(Attack):
         (q0, v0, a0), (q1, v1, a1), (velocity, acceleration, jerk) = columns
         return (
             f"limits = bik.Limits(velocity={velocity}, acceleration={acceleration}, jerk={jerk})\n"
-            f"motion = bik.state_to_state({q0}, {q1}, limits, qd0={v0}, qdd0={a0}, qd1={v1}, qdd1={a1})"
+            f"motion = bik.state_to_state({q0}, {q1}, limits, start_qd={v0}, start_qdd={a0}, end_qd={v1}, end_qdd={a1})"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -131,7 +131,13 @@ def check_duration(motion: bik.Trajectory, start: np.ndarray, end: np.ndarray, l
     kinds = dict(zip(("velocity", "acceleration", "jerk"), limits.tolist(), strict=True))
     try:
         again = bik.state_to_state(
-            start[0], there[0], bik.Limits(**kinds), qd0=start[1], qdd0=start[2], qd1=there[1], qdd1=there[2]
+            start[0],
+            there[0],
+            bik.Limits(**kinds),
+            start_qd=start[1],
+            start_qdd=start[2],
+            end_qd=there[1],
+            end_qdd=there[2],
         )
     except bik.BeetleIkError:  # it ends outside the limits
         return

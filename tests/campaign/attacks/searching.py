@@ -216,7 +216,7 @@ class BestKept(Attack):
             f"{arms.written(case['joints'])}target = np.array({wanted(case)[:3, 3].tolist()})\n"
             f"start, stop = np.array({start}), bik.Stop(max_evaluations={case['budget']})\n"
             f"given = dict(solver={case['solver']}, stop=stop, seed={case['seed']})\n"
-            "solution = bik.solve(robot, target, start=start, **given)"
+            "solution = bik.solve(robot, target, start_q=start, **given)"
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:

@@ -65,7 +65,7 @@ class Solved(Attack):
         return {"joints": joints, "position": bool(random.random() < 0.3), "start": start, "nearest": nearest}
 
     def program(self, case: Case) -> str:
-        options = f", start={arms.configurations(case['joints'])[1].tolist()}" if case.get("start") else ""
+        options = f", start_q={arms.configurations(case['joints'])[1].tolist()}" if case.get("start") else ""
         options += ", prefer='nearest'" if case.get("nearest") else ""
         return (
             f"{arms.written(case['joints'])}target = np.array({wanted(case).tolist()})"

@@ -24,7 +24,7 @@ def tried(call):
 
 limits = bik.Limits({limits})
 target = robot.fk(inside)
-solution = bik.solve(robot, target, start=start)
+solution = bik.solve(robot, target, start_q=start)
 tracker, refusal = tried(lambda: bik.Tracker(robot, start, dt={dt}, limits=limits))
 tracked = [] if tracker is None else [tracker.q] + [tracker.step(target).q for _ in range({ticks})]
 plan, no_plan = tried(lambda: bik.plan_point_to_point(robot, start_q=start, end_q=end, limits=limits))

@@ -152,18 +152,18 @@ fn errors_name_the_joint_and_the_bound() {
     let two = |q: &[f64; 2]| rest(q);
     assert_eq!(
         message(&two(&[0.0; 2]), &two(&[0.0; 2]), &open),
-        "trajectory: q0 and q1, with their velocities and accelerations, are the same state: nothing moves"
+        "trajectory: start_q and end_q, with their velocities and accelerations, are the same state: nothing moves"
     );
-    assert_eq!(message(&two(&[0.0; 2]), &rest(&[0.0]), &open), "q1: expected 2 joints, got 1");
+    assert_eq!(message(&two(&[0.0; 2]), &rest(&[0.0]), &open), "end_q: expected 2 joints, got 1");
     let fast = state([&[1.0, 0.0], &[0.0, 1.2], &[0.0; 2]]);
     assert_eq!(
         message(&two(&[0.0; 2]), &fast, &open),
-        "infeasible: the final velocity (qd1) of joint '1' is 1.200, its limit 1.000"
+        "infeasible: the final velocity (end_qd) of joint '1' is 1.200, its limit 1.000"
     );
     let rising = state([&[1.0, 0.0], &[0.0, -0.9], &[0.0, 3.5]]);
     assert_eq!(
         message(&two(&[0.0; 2]), &rising, &open),
-        "infeasible: to end with its velocity and acceleration (qd1, qdd1), joint '1' would need a velocity of -1.053 \
+        "infeasible: to end with its velocity and acceleration (end_qd, end_qdd), joint '1' would need a velocity of -1.053 \
          shortly before; its limit is 1.000"
     );
     let narrow = open.clone().replace(Field::Upper, vec![Profile::Constant(1.0)]).unwrap();
@@ -174,7 +174,7 @@ fn errors_name_the_joint_and_the_bound() {
     );
     assert_eq!(
         message(&two(&[0.0; 2]), &two(&[1.5, 0.0]), &narrow),
-        "q1: joint '0' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose"
+        "end_q: joint '0' at 1.5 is outside its limits [-inf, 1] by 0.5000 rad: moving it to the limit changes the pose"
     );
     let none = Limits::none_for(2).replace(Field::Jerk, vec![Profile::Constant(5.0), Profile::Constant(f64::INFINITY)]);
     assert_eq!(

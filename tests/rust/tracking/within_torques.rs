@@ -384,3 +384,28 @@ fn milder_stops_end_inside_the_position_limits() {
     }
     assert!(judge.worst <= 1e-9, "{}", judge.worst);
 }
+
+#[test]
+fn a_track_begins_where_the_motors_can_hold_the_arm() {
+    let robot = panda(3.0);
+    let mut rng = rng::stream(11, 0);
+    let options =
+        |torque: Vec<f64>| TrackOptions { limits: Some(limits(&robot, None, torque)), ..TrackOptions::default() };
+    let mut lightened = 0;
+    for _ in 0..12 {
+        let q: Vec<f64> = START.iter().map(|start| start + rng.uniform_in(-0.5, 0.5)).collect();
+        let path = Reference::new(0.01, vec![pose_of(&robot, &q); 2], None).unwrap();
+        let free = track(&robot, &path, None, &options(vec![f64::INFINITY; 7]), &mut Unattended).unwrap();
+        let held = robot.torques_all(&Motions { q: &free.q[..7], qd: None, qdd: None, wrenches: None }).unwrap();
+        // What the configuration that is best without regard to motors needs is a little more than they give.
+        let most = |joint: usize| held[joint].abs();
+        let heaviest = (0..7).max_by(|i, j| most(*i).total_cmp(&most(*j))).unwrap();
+        let mut torque = vec![f64::INFINITY; 7];
+        torque[heaviest] = 0.98 * most(heaviest);
+        match track(&robot, &path, None, &options(torque), &mut Unattended) {
+            Ok(_) => lightened += 1,
+            Err(error) => assert!(error.to_string().contains("needs"), "{error}"),
+        }
+    }
+    assert!(lightened >= 8, "{lightened} of 12");
+}

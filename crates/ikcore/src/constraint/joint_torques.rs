@@ -89,12 +89,14 @@ pub(crate) struct TorqueExcess {
     pub bound: f64,
 }
 
-/// A configuration in which a joint cannot hold the arm.
+/// A configuration in which a joint cannot hold the arm, or not move it against dry friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TooHeavy {
     pub joint: usize,
-    /// Torque that holds the arm (N m, N).
+    /// Size of the torque that holds the arm (N m, N).
     pub torque: f64,
+    /// Dry friction, against which the joint moves (N m, N).
+    pub friction: f64,
     pub limit: f64,
 }
 
@@ -244,13 +246,16 @@ impl JointTorques {
         found
     }
 
-    /// The torque that is farthest beyond its limit.
+    /// The torque of those that hold the arm that is, with dry friction, farthest beyond its limit.
     pub fn beyond(&self, torques: &[f64]) -> Option<TooHeavy> {
-        let each = torques.iter().zip(&self.limits).enumerate();
-        let share = |found: &TooHeavy| found.torque.abs() / found.limit;
-        each.filter(|(_, (torque, limit))| torque.abs() > **limit * (1.0 - TIGHT))
-            .map(|(joint, (torque, limit))| TooHeavy { joint, torque: *torque, limit: *limit })
-            .max_by(|one, other| share(one).total_cmp(&share(other)))
+        let found = |(joint, (torque, limit)): (usize, (&f64, &f64))| {
+            let friction = self.friction(joint).dry;
+            let is_beyond = torque.abs() + friction > limit * (1.0 - TIGHT);
+            is_beyond.then_some(TooHeavy { joint, torque: torque.abs(), friction, limit: *limit })
+        };
+        let share = |found: &TooHeavy| (found.torque + found.friction) / found.limit;
+        let all = torques.iter().zip(&self.limits).enumerate().filter_map(found);
+        all.max_by(|one, other| share(one).total_cmp(&share(other)))
     }
 
     /// Factor by which `motion` must be slowed down to keep the limits, or a bound of it up to `enough`; infinite if a joint cannot hold the arm

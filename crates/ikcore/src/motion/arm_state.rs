@@ -20,8 +20,8 @@ impl ArmState {
         Self { q: q.to_vec(), qd: vec![0.0; q.len()], qdd: vec![0.0; q.len()] }
     }
 
-    /// Checks that there are `n` finite values each; `end` (0 or 1) numbers the state in errors.
-    pub(super) fn check(&self, end: usize, joints: &[String]) -> Result<()> {
+    /// Checks that there are `n` finite values each; `end` (start or end) names the state in errors.
+    pub(super) fn check(&self, end: &str, joints: &[String]) -> Result<()> {
         for (what, values) in [("q", &self.q), ("qd", &self.qd), ("qdd", &self.qdd)] {
             if values.len() != joints.len() || joints.is_empty() {
                 let expected = match joints.len() {
@@ -29,9 +29,9 @@ impl ArmState {
                     1 => "1 joint".into(),
                     n => format!("{n} joints"),
                 };
-                return Err(Error::WrongLength { what: format!("{what}{end}").into(), expected, got: values.len() });
+                return Err(Error::WrongLength { what: format!("{end}_{what}").into(), expected, got: values.len() });
             }
-            require_finite(format!("{what}{end}"), values, |j| format!("joint '{}'", joints[j]))?;
+            require_finite(format!("{end}_{what}"), values, |j| format!("joint '{}'", joints[j]))?;
         }
         Ok(())
     }

@@ -32,11 +32,11 @@ pub fn state_to_state(from: &ArmState, to: &ArmState, limits: &Limits) -> Result
 /// As [`state_to_state`].
 pub fn state_to_state_from(from: &ArmState, to: &ArmState, limits: &Limits, slack: &StartSlack) -> Result<Trajectory> {
     let joints = limits.joint_names();
-    from.check(0, joints)?;
-    to.check(1, joints)?;
+    from.check("start", joints)?;
+    to.check("end", joints)?;
     let rates = rates(limits)?;
-    let from = &ArmState { q: limits.admit_start(None, "q0", &from.q, slack)?.q, ..from.clone() };
-    let to = &ArmState { q: limits.admit(None, "q1", &to.q)?, ..to.clone() };
+    let from = &ArmState { q: limits.admit_start(None, "start_q", &from.q, slack)?.q, ..from.clone() };
+    let to = &ArmState { q: limits.admit(None, "end_q", &to.q)?, ..to.clone() };
     for (j, rates) in rates.iter().enumerate() {
         require_reachable(&joints[j], &to.joint(j), rates)?;
     }
@@ -46,7 +46,8 @@ pub fn state_to_state_from(from: &ArmState, to: &ArmState, limits: &Limits, slac
         return Err(Error::Infeasible { problem: "no motion within the limits connects the two states".into() });
     };
     if motion.duration() == 0.0 {
-        let problem = "q0 and q1, with their velocities and accelerations, are the same state: nothing moves".into();
+        let problem =
+            "start_q and end_q, with their velocities and accelerations, are the same state: nothing moves".into();
         return Err(Error::InvalidTrajectory { problem });
     }
     require_room(limits, &from.q, &motion)?;
@@ -85,7 +86,7 @@ pub(crate) fn meet(from: &ArmState, to: &ArmState, limits: &Limits, duration: f6
 /// As [`state_to_state`]; [`Error::InvalidTrajectory`] for an arm at rest.
 pub fn stop(from: &ArmState, limits: &Limits) -> Result<Trajectory> {
     let joints = limits.joint_names();
-    from.check(0, joints)?;
+    from.check("start", joints)?;
     let rates = rates(limits)?;
     let states: Vec<_> = (0..joints.len()).map(|j| from.joint(j)).collect();
     let motion = Synchronised::stop(&states, &rates).filter(|motion| motion.duration() > 0.0);
@@ -133,19 +134,19 @@ fn require_reachable(joint: &str, to: &MotionState, rates: &Rates) -> Result<()>
         return Ok(());
     }
     if too_much(to.v, rates.velocity) {
-        return refuse("velocity (qd1)", to.v, rates.velocity);
+        return refuse("velocity (end_qd)", to.v, rates.velocity);
     }
     if rates.jerk.is_infinite() {
         return Ok(());
     }
     if too_much(to.a, rates.acceleration) {
-        return refuse("acceleration (qdd1)", to.a, rates.acceleration);
+        return refuse("acceleration (end_qdd)", to.a, rates.acceleration);
     }
     let before = to.v - 0.5 * to.a * to.a.abs() / rates.jerk;
     if too_much(before, rates.velocity) {
         let (before, limit) = (number(before), number(rates.velocity));
         let problem = format!(
-            "to end with its velocity and acceleration (qd1, qdd1), joint '{joint}' would need a velocity of {before} \
+            "to end with its velocity and acceleration (end_qd, end_qdd), joint '{joint}' would need a velocity of {before} \
              shortly before; its limit is {limit}"
         );
         return Err(Error::Infeasible { problem: problem.into() });

@@ -474,9 +474,13 @@ impl ConstantLimits {
     }
 
     /// Says which joint cannot hold the arm, and why.
-    pub(super) fn heavy_in_words(&self, TooHeavy { joint, torque, limit }: TooHeavy) -> String {
+    pub(super) fn heavy_in_words(&self, TooHeavy { joint, torque, friction, limit }: TooHeavy) -> String {
         let (name, unit) = (self.joint_name(joint), self.torque_unit(joint));
-        let [torque, limit] = [torque.abs(), limit].map(number);
+        let [torque, against, limit] = [torque, friction, limit].map(number);
+        if friction > 0.0 {
+            let needs = format!("joint '{name}' needs {torque} {unit} to hold the arm");
+            return format!("{needs} and {against} {unit} against its dry friction, its limit is {limit} {unit}");
+        }
         if torque == limit {
             return format!("joint '{name}' needs all of its limit of {limit} {unit} to hold the arm");
         }

@@ -227,10 +227,7 @@ impl JointPath {
     /// curve and are quicker to compute than its extremes.
     pub(crate) fn excess(&self, joint: usize, lower: f64, upper: f64) -> f64 {
         let of_piece = |piece: usize| {
-            let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
-            let h = self.length(piece);
-            let (first, second) = (c0 + h * c1 / 3.0, c0 + h * (2.0 * c1 + h * c2) / 3.0);
-            let end = c0 + h * (c1 + h * (c2 + h * c3));
+            let [_, first, second, end] = self.bezier_points(piece, joint);
             let beyond = |q: f64| (lower - q).max(q - upper).max(0.0);
             beyond(first).max(beyond(second)).max(beyond(end))
         };
@@ -244,14 +241,26 @@ impl JointPath {
             if checkpoint_at(piece).is_err() {
                 break; // the interrupted caller discards the result
             }
-            let cubic = self.powers(piece).map(|of_power| of_power[joint]);
-            let end = self.length(piece);
-            for s in roots(&derivative(&cubic), 0.0, end).into_iter().chain([0.0, end]) {
-                let q = self.joint_at(piece, s, joint)[0];
-                range = [range[0].min(q), range[1].max(q)];
+            let [start, first, second, end] = self.bezier_points(piece, joint);
+            range = [range[0].min(start).min(end), range[1].max(start).max(end)];
+            // Few pieces turn back beyond what others reach: the inner Bezier points tell which cannot.
+            if first.min(second) < range[0] || first.max(second) > range[1] {
+                let cubic = self.powers(piece).map(|of_power| of_power[joint]);
+                for s in roots(&derivative(&cubic), 0.0, self.length(piece)) {
+                    let q = self.joint_at(piece, s, joint)[0];
+                    range = [range[0].min(q), range[1].max(q)];
+                }
             }
         }
         range
+    }
+
+    /// The Bezier points of a joint over a piece; they enclose it, and it goes through the first and the last.
+    fn bezier_points(&self, piece: usize, joint: usize) -> [f64; 4] {
+        let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);
+        let h = self.length(piece);
+        let end = c0 + h * (c1 + h * (c2 + h * c3));
+        [c0, c0 + h * c1 / 3.0, c0 + h * (2.0 * c1 + h * c2) / 3.0, end]
     }
 }
 

@@ -1,61 +1,71 @@
 //! Adaptive refinement of the grid.
+//!
+//! The profile keeps every limit over whole segments, which takes longer than the fastest motion does. What a segment loses by that falls with
+//! the square of its length: halving it once tells how much is left.
 
 use super::grid::{MAX_GRIDPOINTS, Segment};
 use super::reachability::SpeedProfile;
 use crate::error::Result;
 
-/// The grid is refined until halving segments saves no more than this fraction of the duration. The error is
-/// proportional to their length, so about as much remains.
-const CONVERGED: f64 = 5e-4;
+/// The part of the allowed loss that a new grid aims at, since what it will lose is an estimate.
+const AIM: f64 = 0.6;
 
-/// A segment is halved again if halving it saved more than this fraction of its part of the allowed error.
-const WORTHWHILE: f64 = 0.2;
+/// Most halvings of a segment from one grid to the next.
+const MAX_HALVINGS: u32 = 3;
 
-/// Returns the fastest profile on a grid that starts with `segments` and is halved wherever that saves time.
+/// Returns the fastest profile on a grid that starts with `segments` and is refined where that saves most time, until it loses less than this
+/// fraction of the duration.
 pub(super) fn refine(
     segments: Vec<Segment>,
+    tolerance: f64,
     mut fastest: impl FnMut(Vec<Segment>) -> Result<SpeedProfile>,
 ) -> Result<SpeedProfile> {
-    let mut halve = vec![true; segments.len()];
+    let mut halvings = vec![1; segments.len()];
+    let mut losses = vec![0.0; segments.len()];
     let mut profile = fastest(segments)?;
     loop {
-        let count = profile.segments.len() + halve.iter().filter(|halve| **halve).count();
-        if count == profile.segments.len() || count >= MAX_GRIDPOINTS {
+        let count: usize = halvings.iter().map(|times| 1 << times).sum();
+        if count == halvings.len() || count >= MAX_GRIDPOINTS {
             return Ok(profile);
         }
-        let finer = fastest(halved(&profile.segments, &halve))?;
-        let duration = finer.duration();
-        if profile.duration() - duration <= CONVERGED * duration {
-            return Ok(finer);
-        }
-        halve = worthwhile(&profile, &halve, &finer, WORTHWHILE * CONVERGED * duration / count as f64);
+        let finer = fastest(halved(&profile.segments, &halvings))?;
+        losses = left(&losses, [&profile, &finer], &halvings);
         profile = finer;
-    }
-}
-
-/// Returns the segments, with the marked ones cut in two.
-fn halved(segments: &[Segment], halve: &[bool]) -> Vec<Segment> {
-    let mut finer = Vec::with_capacity(2 * segments.len());
-    for (segment, halve) in segments.iter().zip(halve) {
-        if *halve {
-            let length = 0.5 * segment.length;
-            finer.push(Segment { length, ..*segment });
-            finer.push(Segment { length, from: segment.from + length, ..*segment });
-        } else {
-            finer.push(*segment);
+        let allowed = tolerance * profile.duration();
+        if losses.iter().sum::<f64>() <= allowed {
+            return Ok(profile);
         }
+        halvings = for_loss(&losses, AIM * allowed);
     }
-    finer
 }
 
-/// Returns which of the finer segments to halve next: those from a halving that saved more than `threshold` (s).
-fn worthwhile(coarse: &SpeedProfile, halve: &[bool], finer: &SpeedProfile, threshold: f64) -> Vec<bool> {
+/// Returns the segments, each halved so many times.
+fn halved(segments: &[Segment], halvings: &[u32]) -> Vec<Segment> {
+    let parts_of = |(segment, times): (&Segment, &u32)| {
+        let (segment, parts) = (*segment, 1 << times);
+        let length = segment.length / f64::from(parts);
+        (0..parts).map(move |i| Segment { length, from: segment.from + f64::from(i) * length, ..segment })
+    };
+    segments.iter().zip(halvings).flat_map(parts_of).collect()
+}
+
+/// Returns the time (s) that each segment of the finer profile loses, by what halving saved.
+fn left(losses: &[f64], [coarse, finer]: [&SpeedProfile; 2], halvings: &[u32]) -> Vec<f64> {
     let mut spans = finer.spans();
-    let mut next = Vec::with_capacity(finer.segments.len());
-    for (span, halve) in coarse.spans().zip(halve) {
-        let parts = if *halve { 2 } else { 1 };
+    let mut left = Vec::with_capacity(finer.segments.len());
+    for ((before, times), loss) in coarse.spans().zip(halvings).zip(losses) {
+        let parts = 1 << times;
         let now: f64 = spans.by_ref().take(parts).sum();
-        next.extend((0..parts).map(|_| *halve && (span - now).abs() > threshold));
+        let loss = if *times == 0 { *loss } else { (before - now).abs() / ((parts * parts) as f64 - 1.0) };
+        left.extend(std::iter::repeat_n(loss / parts as f64, parts));
     }
-    next
+    left
+}
+
+/// Returns how often to halve each segment for the least number of them that together lose about `wanted` (s). Segments in n parts lose
+/// the sum of loss / n^2, which is least for n that grow with the cube root of the loss.
+fn for_loss(losses: &[f64], wanted: f64) -> Vec<u32> {
+    let roots = || losses.iter().map(|loss| loss.cbrt());
+    let by_root = (roots().sum::<f64>() / wanted).sqrt();
+    roots().map(|root| (by_root * root).log2().round().clamp(0.0, f64::from(MAX_HALVINGS)) as u32).collect()
 }

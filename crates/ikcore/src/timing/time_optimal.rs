@@ -27,6 +27,10 @@ pub struct TimingOptions {
 /// Number of segments before refinement.
 const FIRST_SEGMENTS: usize = 100;
 
+/// Part of the duration that the grid may cost by estimate; it costs two to four times as much. Where torques are limited a segment takes three times as long to compute.
+const CONVERGED: f64 = 1e-4;
+const CONVERGED_WITH_TORQUES: f64 = 1e-3;
+
 /// Number of segments if jerk limits are to be kept: the profile then only says where the motion takes its time.
 const SEGMENTS_FOR_JERK: usize = 100;
 
@@ -56,7 +60,10 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
             fastest(cut(path, gridpoints - 1))?
         }
         None if limits.limit_jerk() => fastest(cut(path, SEGMENTS_FOR_JERK))?,
-        None => refine(cut(path, FIRST_SEGMENTS), fastest)?,
+        None => {
+            let tolerance = if limits.torques.is_some() { CONVERGED_WITH_TORQUES } else { CONVERGED };
+            refine(cut(path, FIRST_SEGMENTS), tolerance, fastest)?
+        }
     };
     if !limits.limit_jerk() {
         // The profile keeps torques for certain.

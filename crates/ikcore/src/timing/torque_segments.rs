@@ -48,10 +48,16 @@ pub(super) struct SegmentTorques {
     /// Largest u and x for which the bounds hold.
     most: [f64; 2],
     /// At the start, in the middle and at the end.
-    nodes: [Rc<TorqueTerms>; 3],
-    /// Rests over a part of unit length, by joint.
-    rests: Rc<[Rest]>,
+    nodes: [Node; 3],
+    /// Where the rests over a part of unit length are.
+    rests: RestsAt,
 }
+
+/// A point whose terms are known: an index.
+type Node = usize;
+
+/// Index of the first joint's rests.
+type RestsAt = usize;
 
 /// Torques over the segments of a grid, and of grids that refine it.
 #[derive(Debug)]
@@ -63,16 +69,20 @@ pub(super) struct TorqueSegments<'a> {
     negligible: f64,
     point: TorquePoint,
     bend: BendScratch,
+    /// Terms at all points so far.
+    terms: Vec<TorqueTerms>,
+    /// Rests over parts of unit length, by joint; those of all segments so far, one after the other.
+    rests: Vec<Rest>,
     /// Those of the last grid; one without bounds may stand for several segments.
     last: Vec<Rc<SegmentTorques>>,
 }
 
 /// A part of a segment.
 #[derive(Clone, Copy)]
-struct Part<'n> {
+struct Part {
     /// In the parameter since the start of the segment.
     ends: [f64; 2],
-    nodes: [&'n TorqueTerms; 3],
+    nodes: [Node; 3],
     halvings: usize,
 }
 
@@ -89,12 +99,12 @@ impl SegmentTorques {
         is_within && (self.segment == *segment || self.bounds.are_none())
     }
 
-    /// The terms at a place in a piece, if they are known.
-    fn node(&self, piece: usize, s: f64) -> Option<&Rc<TorqueTerms>> {
+    /// The node at a place in a piece, if there is one.
+    fn node(&self, piece: usize, s: f64) -> Option<Node> {
         let Segment { from, length, .. } = self.segment;
         let places = [from, from + 0.5 * length, from + length];
         let k = places.iter().position(|place| *place == s && piece == self.segment.piece)?;
-        Some(&self.nodes[k])
+        Some(self.nodes[k])
     }
 }
 
@@ -104,7 +114,7 @@ impl<'a> TorqueSegments<'a> {
         let torques = limits.torques.as_ref()?;
         let negligible = if is_refined { f64::INFINITY } else { NEGLIGIBLE };
         let (point, bend) = (torques.point(), torques.bend_scratch());
-        Some(Self { path, limits, torques, negligible, point, bend, last: vec![] })
+        Some(Self { path, limits, torques, negligible, point, bend, terms: vec![], rests: vec![], last: vec![] })
     }
 
     /// Returns the torques over these segments, at whose ends x is at most that of `curve`.
@@ -140,14 +150,14 @@ impl<'a> TorqueSegments<'a> {
     ) -> Result<SegmentTorques> {
         let mut node = |at: f64| {
             let same = known.iter().flatten().find_map(|known| known.node(segment.piece, segment.from + at));
-            same.map_or_else(|| Ok(Rc::new(self.terms_at(segment, at)?)), |terms| Ok(Rc::clone(terms)))
+            same.map_or_else(|| self.node_at(segment, at), Ok)
         };
         let nodes = [node(0.0)?, node(0.5 * segment.length)?, node(segment.length)?];
-        let rests = known[0].map_or_else(|| self.rests_of_unit(segment), |coarse| Rc::clone(&coarse.rests));
+        let rests = known[0].map_or_else(|| self.add_rests(segment), |coarse| coarse.rests);
         let most = most.map(|most| ROOM * most);
-        let whole = Part { ends: [0.0, segment.length], nodes: nodes.each_ref().map(|node| &**node), halvings: 0 };
+        let whole = Part { ends: [0.0, segment.length], nodes, halvings: 0 };
         let mut half_planes = vec![];
-        self.push((segment, most, &rests), whole, &mut half_planes)?;
+        self.push((segment, most, rests), whole, &mut half_planes)?;
         Ok(SegmentTorques { segment: *segment, bounds: TorqueBounds::new(half_planes), most, nodes, rests })
     }
 
@@ -163,18 +173,19 @@ impl<'a> TorqueSegments<'a> {
     /// Adds the half-planes in which the torques over a part of a segment are kept while u and x are at most `most`.
     fn push(
         &mut self,
-        (segment, most, rests): (&Segment, [f64; 2], &[Rest]),
-        part: Part<'_>,
+        (segment, most, rests): (&Segment, [f64; 2], RestsAt),
+        part: Part,
         half_planes: &mut Vec<HalfPlane>,
     ) -> Result<()> {
         let Part { ends: [from, to], nodes, halvings } = part;
         // Rests grow with the third power of the length.
         let cube = (to - from).powi(3);
-        let rest_of = |joint: usize| rests[joint].map(|rest| rest * cube);
+        let rest_of = |joint: usize| self.rests[rests + joint].map(|rest| rest * cube);
+        let terms = nodes.map(|node| &self.terms[node]);
         let (mut holds, mut is_tight) = (true, true);
         for (joint, limit) in self.limited() {
             let [of_hold, of_square, of_change] = rest_of(joint);
-            let largest = largest(nodes, joint, |terms| &terms.hold) + of_hold;
+            let largest = largest(terms.map(|terms| terms.hold[joint])) + of_hold;
             holds &= largest + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
             is_tight &= !(of_change * most[0] + of_square * most[1] + of_hold > self.negligible * limit);
         }
@@ -186,7 +197,7 @@ impl<'a> TorqueSegments<'a> {
                     rest: rest_of(joint),
                     drags: self.drags(segment, part, (joint, limit - rest_of(joint)[0]), most[1]),
                 };
-                kept.push(nodes, joint, most, half_planes);
+                kept.push(terms, joint, most, half_planes);
             }
             return Ok(());
         }
@@ -198,8 +209,8 @@ impl<'a> TorqueSegments<'a> {
         for (ends, [start, end]) in
             [([from, from + half], [nodes[0], nodes[1]]), ([from + half, to], [nodes[1], nodes[2]])]
         {
-            let middle = self.terms_at(segment, ends[0] + 0.5 * half)?;
-            self.push((segment, most, rests), Part { ends, nodes: [start, &middle, end], halvings }, half_planes)?;
+            let middle = self.node_at(segment, ends[0] + 0.5 * half)?;
+            self.push((segment, most, rests), Part { ends, nodes: [start, middle, end], halvings }, half_planes)?;
         }
         Ok(())
     }
@@ -209,21 +220,22 @@ impl<'a> TorqueSegments<'a> {
         self.torques.limits().iter().copied().enumerate().filter(|(_, limit)| limit.is_finite())
     }
 
-    /// The terms at a point of a segment.
-    fn terms_at(&mut self, segment: &Segment, at: f64) -> Result<TorqueTerms> {
+    /// A new node at a point of a segment.
+    fn node_at(&mut self, segment: &Segment, at: f64) -> Result<Node> {
         let Self { path, torques, point, .. } = self;
         path.write(segment.piece, segment.from + at, [&mut point.q, &mut point.first, &mut point.second]);
-        let mut terms = torques.terms();
-        torques.write_terms(point, &mut terms);
-        match torques.beyond(&terms.hold) {
-            None => Ok(terms),
+        let node = self.terms.len();
+        self.terms.push(torques.terms());
+        torques.write_terms(point, &mut self.terms[node]);
+        match torques.beyond(&self.terms[node].hold) {
+            None => Ok(node),
             Some(found) => Err(self.too_heavy(segment, at, Some(found))),
         }
     }
 
-    /// The rests over a part of a segment, divided by the third power of its length.
-    fn rests_of_unit(&mut self, segment: &Segment) -> Rc<[Rest]> {
-        let Self { path, torques, bend, .. } = self;
+    /// Adds the rests over a segment, divided by the third power of its length.
+    fn add_rests(&mut self, segment: &Segment) -> RestsAt {
+        let Self { path, torques, bend, rests, .. } = self;
         let half = 0.5 * segment.length;
         // The polynomial of a joint on [-1, 1].
         let cubic = |joint: usize| {
@@ -232,16 +244,22 @@ impl<'a> TorqueSegments<'a> {
         };
         let rates = |joint: usize| Majorant::of(derivative_bounds::<3>(&polynomial(cubic(joint))));
         let farthest = |joint: usize| cubic(joint).iter().map(|c| c.abs()).sum();
-        let mut rests = vec![[0.0; 3]; torques.dof()];
-        torques.rests::<ALL_FACTORS>(rates, farthest, bend, &mut rests);
+        let first = rests.len();
+        rests.resize(first + torques.dof(), [0.0; 3]);
+        let rests = &mut rests[first..];
+        torques.rests::<ALL_FACTORS>(rates, farthest, bend, rests);
         let by_length = segment.length.powi(-3);
         // Derivatives by s, not by x.
-        rests.iter().map(|[g, b, a]| [*g, b / (half * half), a / half].map(|rest| rest * by_length)).collect()
+        rests.iter_mut().for_each(|rest| {
+            let [g, b, a] = *rest;
+            *rest = [g, b / (half * half), a / half].map(|rest| rest * by_length);
+        });
+        first
     }
 
     /// Friction of a joint over a part of a segment against positive and against negative torques, where (ds/dt)^2 is at most `square` and
     /// the torque that holds it up may be as large as `limit`.
-    fn drags(&self, segment: &Segment, part: Part<'_>, (joint, limit): (usize, f64), square: f64) -> [Drag; 2] {
+    fn drags(&self, segment: &Segment, part: Part, (joint, limit): (usize, f64), square: f64) -> [Drag; 2] {
         let friction = self.torques.friction(joint);
         if friction.damping == 0.0 {
             return [friction.drag(0.0, 0.0, 0.0); 2];
@@ -250,7 +268,7 @@ impl<'a> TorqueSegments<'a> {
         let [_, first, second] = self.path.joint_at(segment.piece, segment.from + part.ends[0] + half, joint);
         let third = 6.0 * self.path.powers(segment.piece)[3][joint];
         let most = (half * second).abs() + (0.5 * half * half * third).abs();
-        let room = limit - largest(part.nodes, joint, |terms| &terms.hold);
+        let room = limit - largest(part.nodes.map(|node| self.terms[node].hold[joint]));
         [first + most, most - first].map(|rate| friction.drag(rate, room, square))
     }
 
@@ -299,16 +317,17 @@ impl KeptTorque {
         let Self { ends: [from, to], limit, rest: [rest_g, rest_b, rest_a], drags } = *self;
         // The most that it can be, quickly: few joints come near their limit.
         let friction = drags.map(|drag| drag.at_rest + drag.per_square * most[1]);
-        let of_square = largest(nodes, joint, |terms| &terms.of_square) + rest_b;
-        let of_change = largest(nodes, joint, |terms| &terms.of_change) + rest_a;
-        let hold = largest(nodes, joint, |terms| &terms.hold) + rest_g;
+        let of_square = largest(nodes.map(|terms| terms.of_square[joint])) + rest_b;
+        let of_change = largest(nodes.map(|terms| terms.of_change[joint])) + rest_a;
+        let hold = largest(nodes.map(|terms| terms.hold[joint])) + rest_g;
         let viscous = drags.map(|drag| 2.0 * to * drag.per_square * most[0]);
         let inertial = of_change * most[0] + of_square * (most[1] + 2.0 * to * most[0]);
         if inertial + hold + friction[0].max(friction[1]) + viscous[0].max(viscous[1]) <= limit {
             return;
         }
-        let of = |term: Term| control_points(nodes.map(|terms| term(terms)[joint]));
-        let [a, b, g] = [of(|terms| &terms.of_change), of(|terms| &terms.of_square), of(|terms| &terms.hold)];
+        let a = control_points(nodes.map(|terms| terms.of_change[joint]));
+        let b = control_points(nodes.map(|terms| terms.of_square[joint]));
+        let g = control_points(nodes.map(|terms| terms.hold[joint]));
         // x(s) = x + 2 u s, and s times a parabola is a cubic.
         let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [from, to]));
         for i in 0..4 {
@@ -326,13 +345,10 @@ impl KeptTorque {
     }
 }
 
-/// One of the terms of a torque, by joint.
-type Term = fn(&TorqueTerms) -> &[f64];
-
-/// The largest size of a term over a part of a segment, up to the rest.
-fn largest(nodes: [&TorqueTerms; 3], joint: usize, term: Term) -> f64 {
-    let points = control_points(nodes.map(|terms| term(terms)[joint]));
-    points.into_iter().fold(0.0_f64, |largest, point| largest.max(point.abs()))
+/// The largest size of the parabola with these values at the start, in the middle and at the end.
+fn largest(values: [f64; 3]) -> f64 {
+    let [start, middle, end] = control_points(values).map(f64::abs);
+    start.max(middle).max(end)
 }
 
 /// The Bernstein coefficients of a parabola as those of a cubic.

@@ -12,6 +12,7 @@
 //! | file | what |
 //! |---|---|
 //! | `track`, `track_options` | the call for a whole path, and its options |
+//! | `start_on_paths` | the configuration from which a track begins where none is given |
 //! | `path_approach` | approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
@@ -56,6 +57,7 @@ mod rule;
 mod safety_filter;
 mod session;
 mod settling;
+mod start_on_paths;
 mod step;
 mod step_context;
 mod stop_torques;

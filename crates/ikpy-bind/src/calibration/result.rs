@@ -99,8 +99,8 @@ impl PyCalibration {
     }
 }
 
-fn optional<'py>(py: Python<'py>, pose: Option<&Pose>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-    pose.map(|pose| pose_array(py, pose)).transpose()
+fn optional<'py>(py: Python<'py>, pose: Option<&Pose>) -> Option<Bound<'py, PyArray2<f64>>> {
+    pose.map(|pose| pose_array(py, pose))
 }
 
 #[pymethods]
@@ -220,25 +220,25 @@ impl PyCalibration {
 
     /// Pose of the robot's base (4, 4) in the frame of the measurements, for `Robot.with_base`.
     #[getter]
-    fn base<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn base<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         pose_array(py, self.robot.get().core.base())
     }
 
     /// Pose of the tool (4, 4) in the frame of the tip link, for `Robot.with_tool`.
     #[getter]
-    fn tool<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn tool<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         pose_array(py, self.robot.get().core.tool())
     }
 
     /// Pose of the camera (4, 4): in the frame of the robot's base if it is fixed, in that of the tip if it is on the arm; None without.
     #[getter]
-    fn camera<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn camera<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
         optional(py, self.core.camera.as_ref())
     }
 
     /// Pose of the board (4, 4): in the frame of the tip if the camera is fixed, else in that of the robot's base; None without a camera.
     #[getter]
-    fn board<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn board<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
         optional(py, self.core.board.as_ref())
     }
 

@@ -126,7 +126,7 @@ impl PyJoints {
         match &self_.as_super().core.kind {
             MoveKind::Joints(JointGoal::Configuration(q)) => Ok(copied(py, q).into_any()),
             MoveKind::Joints(JointGoal::Pose(pose)) | MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => {
-                Ok(pose_array(py, pose)?.into_any())
+                Ok(pose_array(py, pose).into_any())
             }
             MoveKind::Wait(_) => Ok(py.None().into_bound(py)),
         }
@@ -286,7 +286,7 @@ impl PyWait {
 
 fn end_pose<'py>(py: Python<'py>, each: &Move) -> PyResult<Option<Bound<'py, PyAny>>> {
     match &each.kind {
-        MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => Ok(Some(pose_array(py, pose)?.into_any())),
+        MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => Ok(Some(pose_array(py, pose).into_any())),
         MoveKind::Joints(_) | MoveKind::Wait(_) => Ok(None),
     }
 }

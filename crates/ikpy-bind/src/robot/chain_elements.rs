@@ -18,7 +18,7 @@ fn elements<'py>(py: Python<'py>, robot: &Robot) -> PyResult<Vec<Bound<'py, PyTu
 
 fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple>> {
     match element {
-        Element::Fixed(pose) => ("fixed", pose_array(py, pose)?).into_pyobject(py),
+        Element::Fixed(pose) => ("fixed", pose_array(py, pose)).into_pyobject(py),
         Element::Link(name) => ("link", name).into_pyobject(py),
         Element::Moving { axis, turns, joint, scale, offset } => {
             let axis: Bound<'py, PyArray1<f64>> = copied(py, axis.as_slice());
@@ -34,8 +34,8 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
 }
 
 /// Returns the poses of the first link, and of the tip in the frame of the last link.
-fn ends<'py>(py: Python<'py>, robot: &Robot) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
-    Ok([pose_array(py, robot.base())?, pose_array(py, robot.tool())?])
+fn ends<'py>(py: Python<'py>, robot: &Robot) -> [Bound<'py, PyArray2<f64>>; 2] {
+    [pose_array(py, robot.base()), pose_array(py, robot.tool())]
 }
 
 /// Joint: (name, kind, lower, upper, velocity).
@@ -75,7 +75,7 @@ impl PyRobot {
     /// Returns (base (4, 4), elements, tool (4, 4)) for `beetle_ik.interop`, with elements as in `_from_chain`.
     fn _chain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.core.require_one_tip("interop").map_err(raise)?;
-        let [base, tool] = ends(py, &self.core)?;
+        let [base, tool] = ends(py, &self.core);
         (base, elements(py, &self.core)?, tool).into_pyobject(py)
     }
 

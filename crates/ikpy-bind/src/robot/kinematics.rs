@@ -35,7 +35,7 @@ impl PyRobot {
             Rows::One(q) => {
                 let q = q.as_slice()?;
                 let pose = link.map_or_else(|| robot.fk(q), |link| robot.link_fk(link, q)).map_err(raise)?;
-                Ok(own(pose_array(py, &pose)?).into_any())
+                Ok(own(pose_array(py, &pose)).into_any())
             }
             Rows::Many(q, m) => {
                 let poses = in_pieces(py, q.as_slice()?, robot.dof(), QUICK_ROWS, |q| match link {

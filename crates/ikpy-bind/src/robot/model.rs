@@ -35,7 +35,7 @@ fn visual_parts<'py>(py: Python<'py>, visual: &Visual) -> PyResult<VisualParts<'
         }
     };
     let color = visual.color.map(|color| copied(py, &color));
-    Ok((visual.link.clone(), shape, matrix4_array(py, &placement)?, color))
+    Ok((visual.link.clone(), shape, matrix4_array(py, &placement), color))
 }
 
 #[pymethods]

@@ -20,7 +20,7 @@ use crate::traversal::traversed;
 
 /// A model-free controller for your own loop and hardware.
 ///
-///     session = bik.BroydenBAS(max_evaluations_per_step=1).session(q0, dt=0.01, limits=limits)
+///     session = bik.BroydenBAS(max_evaluations_per_step=1).session(start_q, dt=0.01, limits=limits)
 ///     while session.time < path.duration:
 ///         q = session.command(path.position(session.time + session.dt))
 ///         session.observe(measure_tip_after(q))
@@ -79,7 +79,7 @@ impl PyControlSession {
         seed: i128,
     ) -> PyResult<Self> {
         let py = start.py();
-        let start = vector("start", start)?;
+        let start = vector("start_q", start)?;
         limits.map_or(Ok(()), |limits| limits.require_no_functions("session", "track_model_free"))?;
         let (in_force, limits) = limits_without_robot(py, limits, start.len(), &Sampling::once())?;
         let session = ControlSession::new(controller, &start, dt, limits, tolerance, count("seed", seed)?);
@@ -117,11 +117,11 @@ macro_rules! session {
     ($class:ty) => {
         #[pymethods]
         impl $class {
-            /// Starts a `ControlSession` at `start` (n,) and t = 0, for your own loop.
-            #[pyo3(signature = (start, *, dt, limits=None, position_tolerance=1e-9, rotation_tolerance=1e-9, seed=0))]
+            /// Starts a `ControlSession` at `start_q` (n,) and t = 0, for your own loop.
+            #[pyo3(signature = (start_q, *, dt, limits=None, position_tolerance=1e-9, rotation_tolerance=1e-9, seed=0))]
             fn session(
                 &self,
-                start: &Bound<'_, PyAny>,
+                start_q: &Bound<'_, PyAny>,
                 dt: f64,
                 limits: Option<&PyLimits>,
                 position_tolerance: f64,
@@ -129,7 +129,7 @@ macro_rules! session {
                 seed: i128,
             ) -> PyResult<PyControlSession> {
                 let tolerance = Tolerance { position: position_tolerance, rotation: rotation_tolerance };
-                PyControlSession::new(&self.controller(), start, dt, limits, tolerance, seed)
+                PyControlSession::new(&self.controller(), start_q, dt, limits, tolerance, seed)
             }
         }
     };

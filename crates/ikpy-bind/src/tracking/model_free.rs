@@ -128,7 +128,7 @@ impl PyModelFreeResult {
 ///         exception or returns anything else, the run ends with the record so far; on the first measurement, the
 ///         exception propagates.
 ///     path: reference positions, or poses, over time.
-///     start: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
+///     start_q: (n,), configuration at t = 0 (rad, m), up to 0.087 (5 degrees) outside the limits; the arm then begins there and is led
 ///         inside.
 ///     dt: time step (s). If it does not divide the path's duration, the last step ends after it, at the path's end.
 ///     controller: `BroydenBAS` or `ZNNBAS`; None: `BroydenBAS()`.
@@ -155,14 +155,14 @@ impl PyModelFreeResult {
 ///     >>> run.settled_error < 1e-6
 ///     True
 #[pyfunction]
-#[pyo3(signature = (plant, path, start, *, dt, controller=None, limits=None, position_tolerance=1e-9,
+#[pyo3(signature = (plant, path, start_q, *, dt, controller=None, limits=None, position_tolerance=1e-9,
                     rotation_tolerance=1e-9, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn track_model_free(
     py: Python<'_>,
     plant: &Bound<'_, PyAny>,
     path: &Bound<'_, PyAny>,
-    start: &Bound<'_, PyAny>,
+    start_q: &Bound<'_, PyAny>,
     dt: f64,
     controller: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
@@ -172,7 +172,7 @@ pub fn track_model_free(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyModelFreeResult> {
     let reference = path_argument(path)?.get().reference(py, dt)?;
-    let start = vector("start", start)?;
+    let start = vector("start_q", start_q)?;
     let sampling = Sampling::of_ticks(dt, reference.len() - 1);
     let (in_force, limits) = limits_without_robot(py, limits, start.len(), &sampling)?;
     let options = ModelFreeOptions {

@@ -81,7 +81,7 @@ impl PyKinematicPlant {
         let mut plant = self.moving.lock().unwrap_or_else(PoisonError::into_inner);
         let tip = plant.measure(&q).map_err(|Fault(reason)| invalid(format!("the plant {reason}")))?;
         match tip.pose() {
-            Some(pose) => Ok(own(pose_array(py, &pose)?).into_any()),
+            Some(pose) => Ok(own(pose_array(py, &pose)).into_any()),
             None => Ok(PyArray1::from_slice(py, tip.position()).into_any()),
         }
     }

@@ -204,7 +204,7 @@ impl PyTrackResult {
 ///         duration, for example {"left_tool": path}; a constant pose (4, 4) or position (3,) counts as a path, and a
 ///         tip left out is free. The key ("left_tool", "right_tool") gives the second tip in the frame of the first.
 ///         This relative pose has priority, so that both arms lag where one cannot follow.
-///     start: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
+///     start_q: (n,), configuration at t = 0; None: a solution for the first point of the path, the best one for the goals
 ///         or, without goals, one far from singularities and limits.
 ///     dt: time step (s).
 ///     task: part of the path that counts, one of `tasks`, or a dict for several tips; None: all of it.
@@ -230,7 +230,7 @@ impl PyTrackResult {
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
 ///         at its "start".
-///     start_slack: how far start may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
+///     start_slack: how far start_q may be outside the position limits (rad, m), a number or (n,); the arm then begins there and is led
 ///         inside within its limits, see `TrackResult.start_outside`. None: 5 degrees, 5 mm for joints that slide.
 ///     ease: under acceleration or jerk limits, begin with an approach: the quickest motion from rest within the limits
 ///         that meets the moving path, after which the arm is on it. The tip is off the path until then.
@@ -258,17 +258,17 @@ impl PyTrackResult {
 ///     >>> track.q.shape
 ///     (501, 6)
 #[pyfunction]
-#[pyo3(signature = (robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
+#[pyo3(signature = (robot, path, start_q=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                     position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
                     margin=None, self_collision=None, keep=None, seed=0, limit_at="interval", ease=false, recover=true,
                     start_slack=None, progress=None),
-       text_signature = "(robot, path, start=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
+       text_signature = "(robot, path, start_q=None, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', ease=False, recover=True, start_slack=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn track(
     py: Python<'_>,
     robot: &Bound<'_, PyRobot>,
     path: &Bound<'_, PyAny>,
-    start: Option<&Bound<'_, PyAny>>,
+    start_q: Option<&Bound<'_, PyAny>>,
     dt: f64,
     task: Option<&Bound<'_, PyAny>>,
     solver: Option<&Bound<'_, PyAny>>,
@@ -298,7 +298,7 @@ pub fn track(
     }
     let sampling = Sampling::of_ticks(dt, references[0].len() - 1);
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &sampling)?;
-    let start = start.map(|start| joint_vector(&arm, "start", start)).transpose()?;
+    let start = start_q.map(|q| joint_vector(&arm, "start_q", q)).transpose()?;
     let surroundings = read_surroundings(robot.get(), obstacles, margin, self_collision)?;
     let (position_tolerance, rotation_tolerance) = (&position_tolerance, &rotation_tolerance);
     let settings = TaskArguments { task, position_tolerance, rotation_tolerance }.read_for(robot.get(), &asked)?;

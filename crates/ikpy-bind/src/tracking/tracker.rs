@@ -40,7 +40,7 @@ use crate::units;
 ///
 /// Args:
 ///     robot: the arm.
-///     start: (n,), configuration at t = 0.
+///     start_q: (n,), configuration at t = 0.
 ///     dt: time step (s).
 ///     task: as in `track`; it may also name tips that get their targets later.
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each step; None: the model-based rule.
@@ -58,7 +58,7 @@ use crate::units;
 ///     limit_at: as in `track`.
 ///     target_filter: `filters.OneEuro` or `filters.LowPass`, applied to the targets as they arrive; None: none.
 ///     timeout: time without a new target after which the arm stops (s); None: never.
-///     start_slack: how far start, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
+///     start_slack: how far start_q, and q of `reset`, may be outside the position limits (rad, m), a number or (n,); the arm then begins
 ///         there and is led inside within its limits, see `Tracker.start_outside`. None: 5 degrees, 5 mm for joints that slide.
 ///         Rounding is taken off in any case.
 ///     recover: whether an arm that comes no nearer to its target, at a joint limit or in a singular configuration, goes to a
@@ -101,15 +101,15 @@ in_progress!(PyTracker, Session);
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
+    #[pyo3(signature = (robot, start_q, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None,
                         position_tolerance=ToleranceArgument::All(1e-6), rotation_tolerance=ToleranceArgument::All(1e-6), obstacles=None,
                         margin=None, self_collision=None, keep=None, seed=0, limit_at="interval", target_filter=None, timeout=None,
                         start_slack=None, recover=true),
-           text_signature = "(robot, start, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
+           text_signature = "(robot, start_q, *, dt, task=None, solver=None, limits=None, goals=None, joint_weights=None, position_tolerance=1e-06, rotation_tolerance=1e-06, obstacles=None, margin=None, self_collision=None, keep=None, seed=0, limit_at='interval', target_filter=None, timeout=None, start_slack=None, recover=True)")]
     #[allow(clippy::too_many_arguments)]
     fn new(
         robot: &Bound<'_, PyRobot>,
-        start: &Bound<'_, PyAny>,
+        start_q: &Bound<'_, PyAny>,
         dt: f64,
         task: Option<&Bound<'_, PyAny>>,
         solver: Option<&Bound<'_, PyAny>>,
@@ -156,7 +156,7 @@ impl PyTracker {
         };
         let target_filter = read_filter(target_filter)?;
         let options = TrackOptions { target_filter, timeout, ..asked.read(resolved)? };
-        let mut session = Session::new(arm, &joint_vector(arm, "start", start)?, dt, &options).map_err(raise)?;
+        let mut session = Session::new(arm, &joint_vector(arm, "start_q", start_q)?, dt, &options).map_err(raise)?;
         units::doubt(options.surroundings.obstacles.as_ref().and_then(|all| units::of_obstacles(arm, all)))?;
         if let Some(MovingObstacles { shapes, velocities }) = given.filter(|given| !given.velocities.is_empty()) {
             session.set_obstacles(Some(shapes), velocities).map_err(raise)?;

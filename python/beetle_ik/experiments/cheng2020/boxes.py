@@ -129,7 +129,7 @@ def _step(
             task.robot,
             target,
             task=bik.tasks.Position(),
-            start=q,
+            start_q=q,
             solver=setting.solver,
             limits=bik.Limits(lower=np.maximum(q - half, lower), upper=np.minimum(q + half, upper)),
             position_tolerance=band,

@@ -87,7 +87,7 @@ def _reach(walk: Literal["star", "chain"], c1: float, count: int, seed: int) -> 
             robot,
             robot.fk(robot.random_configurations(count, seed=seed + 1))[:, :3, 3],
             task=bik.tasks.Position(),
-            starts=robot.random_configurations(count, seed=seed),
+            start_q=robot.random_configurations(count, seed=seed),
             solver=bik.papers.BAS(variant=walk, c1=c1, max_passes=passes),
             position_tolerance=_NEAR,
             seed=seed,

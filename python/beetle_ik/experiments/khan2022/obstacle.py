@@ -62,9 +62,9 @@ def obstacle(context: Context) -> Part:
     """Runs one round by each method."""
     points = circle(1.0).position(np.linspace(0.0, 1.0, _POINTS + 1))
     ball = _ball(points)
-    free = _round(points, ball, lambda point, start, _: bik.solve(ARM, point, start=start))
+    free = _round(points, ball, lambda point, start, _: bik.solve(ARM, point, start_q=start))
     pushed = _round(
-        points, ball, lambda point, start, _: bik.solve(ARM, point, start=start, obstacles=[ball], margin=MARGIN)
+        points, ball, lambda point, start, _: bik.solve(ARM, point, start_q=start, obstacles=[ball], margin=MARGIN)
     )
     rounds = {"no obstacle known": free, "null space": pushed}
     for factor in context.each("khan2022: beetle among obstacles", context.pick(full=_FACTORS, short=_FACTORS[:2])):
@@ -125,7 +125,7 @@ def _beetle(points: Array, ball: bik.obstacles.Obstacle, evaluations: Array, fac
     def solve(point: Array, start: Array, i: int) -> bik.Solution:
         stop = bik.Stop(max_evaluations=max(2, factor * int(evaluations[i])))
         return bik.solve(
-            ARM, point, start=start, obstacles=[ball], margin=MARGIN, solver=bik.papers.BAS(variant="greedy"),
+            ARM, point, start_q=start, obstacles=[ball], margin=MARGIN, solver=bik.papers.BAS(variant="greedy"),
             stop=stop, position_tolerance=_FOLLOWED, seed=seed + i,
         )  # fmt: skip
 
@@ -136,7 +136,7 @@ def _ball(points: Array) -> bik.obstacles.Sphere:
     """Returns a ball beside the elbow of the arm half way round the circle."""
     q = np.asarray(ON_CIRCLE)
     for point in points[: len(points) // 2]:
-        q = np.asarray(bik.solve(ARM, point, start=q).q)
+        q = np.asarray(bik.solve(ARM, point, start_q=q).q)
     shoulder, elbow = ARM.link_poses(q)[[2, 4], :3, 3]
     sideways = np.cross(elbow - shoulder, points[len(points) // 2] - elbow)
     radius = 0.05

@@ -214,7 +214,7 @@ def global_solution(reached: Mapping[float, int], targets: int) -> Claim:
 def _row(name: str, method: Method, paths: Sequence[tuple[str, bik.Path, bik.Limits]], seed: int) -> list[str | float]:
     row: list[str | float] = [name, method.knows]
     for _, path, limits in paths:
-        start = np.asarray(bik.solve(IIWA, path.position(0.0), start=ON_CIRCLE).q)
+        start = np.asarray(bik.solve(IIWA, path.position(0.0), start_q=ON_CIRCLE).q)
         q, reference = method.run(path, start, limits, seed)
         late = slice(len(q) // 2, None)
         row.append(1e3 * rms(((IIWA.fk(q[late])[:, :3, 3] - reference[late]) ** 2).sum(axis=1)))

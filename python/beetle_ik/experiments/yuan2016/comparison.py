@@ -128,7 +128,7 @@ def _solve(
     return bik.solve(
         ROBOT,
         run.goal,
-        start=run.start,
+        start_q=run.start,
         solver=solver,
         limits=limits,
         position_tolerance=tolerance,

@@ -226,7 +226,7 @@ def _share(goals: Array, starts: Array, solver: Solver, limits: bik.Limits | Non
     found = bik.solve_batch(
         ROBOT,
         goals,
-        starts=starts,
+        start_q=starts,
         solver=solver,
         limits=limits,
         position_tolerance=TOLERANCE,

@@ -133,7 +133,7 @@ def _share(goals: Array, starts: Array) -> float:
     found = bik.solve_batch(
         ROBOT,
         goals,
-        starts=starts,
+        start_q=starts,
         solver=bik.papers.APPS(),
         limits=bik.Limits(lower=-np.inf, upper=np.inf),
         position_tolerance=TOLERANCE,

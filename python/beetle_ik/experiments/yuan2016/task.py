@@ -46,7 +46,7 @@ def reach(goal: Array, start: Array, solver: bik.papers.APPS, *, budget: int = B
     return bik.solve(
         ROBOT,
         goal,
-        start=start,
+        start_q=start,
         solver=solver,
         position_tolerance=TOLERANCE,
         rotation_tolerance=TOLERANCE,

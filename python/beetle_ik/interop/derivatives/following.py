@@ -21,7 +21,7 @@ def solutions(robot: Robot, targets: Rows, starts: Rows | None = None) -> Rows:
         starts: configurations (m, n); None: as in `solve`.
     """
     each = targets if targets.ndim < 4 else {tip: targets[:, i] for i, tip in enumerate(robot.tips)}
-    batch = solve_batch(robot, each, starts=starts, position_tolerance=PRECISE, rotation_tolerance=PRECISE)
+    batch = solve_batch(robot, each, start_q=starts, position_tolerance=PRECISE, rotation_tolerance=PRECISE)
     reached = (batch.position_error <= REACHED) & ~(batch.rotation_error > REACHED)  # NaN: orientation free
     return np.column_stack((batch.q, reached))
 

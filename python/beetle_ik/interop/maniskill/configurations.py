@@ -36,7 +36,7 @@ def configurations(
         solutions = solve_all(
             robot,
             target,
-            start=q,
+            start_q=q,
             redundancy=count,
             position_tolerance=tolerance,
             rotation_tolerance=tolerance,
@@ -48,7 +48,7 @@ def configurations(
         solve(
             robot,
             target,
-            start=start,
+            start_q=start,
             limits=limits,
             position_tolerance=tolerance,
             rotation_tolerance=tolerance,

@@ -101,14 +101,14 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "from_drifted" NotFinite: pose::from_drifted("target", &(Matrix4::identity() * NAN)), "target must be finite, but entry (0, 0) is NaN";
         "from_drifted" NotRigid: pose::from_drifted("target", &(Matrix4::identity() * 2.0)), "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)";
         "from_matrix" NotRigid: pose::from_matrix("target", &(Matrix4::identity() * 2.0)), "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)";
-        "state_to_state" WrongLength: state_to_state(&state(&[0.0; 2]), &state(&[1.0]), &rated()), "q1: expected 2 joints, got 1";
-        "state_to_state" NotFinite: state_to_state(&state(&[0.0, NAN]), &state(&[1.0; 2]), &rated()), "q0 must be finite, but joint '1' is NaN";
+        "state_to_state" WrongLength: state_to_state(&state(&[0.0; 2]), &state(&[1.0]), &rated()), "end_q: expected 2 joints, got 1";
+        "state_to_state" NotFinite: state_to_state(&state(&[0.0, NAN]), &state(&[1.0; 2]), &rated()), "start_q must be finite, but joint '1' is NaN";
         "state_to_state" UnsupportedLimit: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &varying(Field::Velocity)), "state_to_state cannot honour time-varying velocity limits: give numbers";
         "state_to_state" OutOfRange: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &constant(Field::Velocity, 0.0)), "velocity limit of joints '0', '1' must be positive, got 0";
         "state_to_state" NoPace: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &Limits::none_for(2)), "joints '0', '1' have neither a velocity nor an acceleration limit, so that nothing sets their pace: give a velocity limit";
-        "state_to_state" OutsideLimits: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "q1: joint '0' at 1 is outside its limits [-inf, 0.5] by 0.5000 rad: moving it to the limit changes the pose";
+        "state_to_state" OutsideLimits: state_to_state(&state(&[0.0; 2]), &state(&[1.0; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "end_q: joint '0' at 1 is outside its limits [-inf, 0.5] by 0.5000 rad: moving it to the limit changes the pose";
         "state_to_state" Infeasible: state_to_state(&moving(&[0.4; 2], &[1.0; 2]), &state(&[0.2; 2]), &rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: joint '0' would get to 0.6500, beyond its upper limit 0.5000: begin or end it slower, or farther from its limit";
-        "state_to_state" InvalidTrajectory: state_to_state(&state(&[0.0; 2]), &state(&[0.0; 2]), &rated()), "trajectory: q0 and q1, with their velocities and accelerations, are the same state: nothing moves";
+        "state_to_state" InvalidTrajectory: state_to_state(&state(&[0.0; 2]), &state(&[0.0; 2]), &rated()), "trajectory: start_q and end_q, with their velocities and accelerations, are the same state: nothing moves";
         "stop" InvalidTrajectory: stop(&state(&[0.0; 2]), &rated()), "trajectory: the arm is at rest: nothing has to stop";
         "Path::to_bytes" InvalidPath: Path::new(Own).to_bytes(), "path: a curve of your own cannot be stored; store its samples";
         "Path::from_bytes" OutOfRange: spoiled_circle(1.7, -1.0), "duration of the stored path must be positive and finite, got -1";
