@@ -26,7 +26,7 @@ import beetle_ik as bik
 from beetle_ik.interop import maniskill
 from beetle_ik.interop.lerobot import RobotKinematics
 
-RATE, POSES = 50.0, 1000
+RATE, POSES, ROUNDS = 50.0, 1000, 7
 
 
 def main() -> None:
@@ -55,12 +55,33 @@ def follow(urdf: str, frame: str, home: np.ndarray) -> None:
     poses = swing(ours.forward_kinematics(home))
     tracker = ours.tracker(home, dt=1.0 / RATE)
     report("beetle-ik", ours, home, poses, ours.inverse_kinematics)
+    beside_plain_solve(ours, home, poses)
     report("beetle-ik, tracker", ours, home, poses, lambda _, pose: tracker.step(pose))
     theirs = placo_kinematics()
     if theirs is not None:
         placo = theirs(urdf, frame)
         placo.forward_kinematics(home)  # its first solve would use the Jacobian of the zero configuration
         report("LeRobot (placo)", ours, home, poses, placo.inverse_kinematics)
+
+
+def beside_plain_solve(ours: RobotKinematics, home: np.ndarray, poses: list[np.ndarray]) -> None:
+    """Prints the processor time of the door's call and, in turns, of `solve` with its task from the same joints."""
+    task, q, calls = bik.tasks.Pose(first="position"), home, []
+    for pose in poses:
+        calls.append((q, np.radians(q[: ours.robot.dof]), pose))
+        q = ours.inverse_kinematics(q, pose)
+    least = [np.inf, np.inf]
+    for _ in range(ROUNDS):
+        begin = time.process_time()
+        for degrees, _, pose in calls:
+            ours.inverse_kinematics(degrees, pose)
+        between = time.process_time()
+        for _, radians, pose in calls:
+            bik.solve(ours.robot, pose, task=task, start_q=radians)
+        spent = between - begin, time.process_time() - between
+        least = [min(pair) for pair in zip(least, spent, strict=True)]
+    door, plain = (1e6 * seconds / len(calls) for seconds in least)
+    print(f"beetle-ik, processor time: {door:.2f} us a call, plain solve {plain:.2f} us: {door / plain:.2f} times")
 
 
 def placo_kinematics() -> type | None:

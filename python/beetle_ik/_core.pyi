@@ -629,6 +629,28 @@ class Robot:
         """Returns the velocity ellipsoid of the tip at q (n,) for unit joint speeds; `motion` is as in `manipulability`."""
 
 @final
+class _JointEntries:
+    """Where the joints of a robot are in arrays of another library, for `beetle_ik.interop`.
+
+    Args:
+        robot: the robot.
+        at: index of each joint of the robot among the entries.
+        count: number of entries that an array must have; more may follow.
+        unit: what one unit of each entry is (rad, m), one per joint of the robot.
+    """
+
+    def __new__(cls, robot: Robot, at: Sequence[int], count: int, unit: Sequence[float]) -> _JointEntries: ...
+    def read(self, name: str, values: ArrayLike) -> _Array:
+        """Returns the entries (k,), a copy."""
+    def q(self, name: str, values: ArrayLike) -> _Array:
+        """Returns the joint positions of the robot (n,) (rad, m)."""
+    def inside(self, name: str, values: ArrayLike) -> _Array:
+        """Returns the joint positions of the robot (n,) (rad, m), each at its nearest limit if it is outside."""
+    def placed(self, q: ArrayLike, entries: ArrayLike) -> _Array:
+        """Returns a copy of the entries with the joint positions q (n,) (rad, m) in their places."""
+    def __getnewargs__(self) -> tuple[Robot, list[int], int, list[float]]: ...
+
+@final
 class VelocityEllipsoid:
     """The ellipsoid of tip velocities for unit joint speeds, |q'| = 1. It has one semi-axis for each direction in which the
     tip can move, longest first.
@@ -4201,7 +4223,7 @@ class Joints(Move):
         name: name in messages and reports.
 
     Raises:
-        InvalidInputError: q_or_pose of another shape, or no rigid transform.
+        InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero.
     """
 
     def __new__(cls, q_or_pose: ArrayLike, *, blend: float = 0.0, name: str | None = None) -> Joints: ...
@@ -4222,7 +4244,7 @@ class Line(Move):
         name: name in messages and reports.
 
     Raises:
-        InvalidInputError: a pose of another shape, or no rigid transform.
+        InvalidInputError: a pose of another shape, or no rigid transform; a speed that is not positive, or a blend below zero.
     """
 
     def __new__(
@@ -4250,7 +4272,8 @@ class Arc(Move):
         name: name in messages and reports.
 
     Raises:
-        InvalidInputError: a point or a pose of another shape, or no rigid transform.
+        InvalidInputError: a point or a pose of another shape, or no rigid transform; a speed or an angle that is not
+            positive, or a blend below zero.
     """
 
     def __new__(
@@ -4284,6 +4307,9 @@ class Wait(Move):
     Args:
         seconds: how long (s), from 0 to 1e6.
         name: name in messages and reports.
+
+    Raises:
+        InvalidInputError: a time outside this range.
     """
 
     def __new__(cls, seconds: float, *, name: str | None = None) -> Wait: ...
@@ -4795,7 +4821,9 @@ class Trajectory:
     def to_csv(self, file: str | os.PathLike[str], *, dt: float | None = None) -> None:
         """Writes samples as CSV: every `dt` (s) and at the end; None: at the knots. The file appears complete or not at all."""
     def to_npz(self, file: str | os.PathLike[str]) -> None:
-        """Writes knots and coefficients as npz. The file appears complete or not at all."""
+        """Writes knots and coefficients as npz. The file appears complete or not at all; a name without ending gets ".npz", as by
+        `numpy.savez`.
+        """
     @staticmethod
     def from_csv(file: str | os.PathLike[str]) -> Trajectory:
         """Reads a file that `to_csv` wrote, or any CSV with a column `time` and one column per joint."""

@@ -33,6 +33,7 @@ CASES = {
     "recordings": 3,
     "plants": 5,
     "stops_among_obstacles": 4,
+    "any_stop": 6,
     "complete_sets": 6,
     "arguments": 12,
 }
@@ -58,6 +59,11 @@ def test_a_case_is_the_same_whenever_it_is_drawn() -> None:
     for one in ATTACKS.values():
         assert one.program(attack.drawn(one, 3, 7)) == one.program(attack.drawn(one, 3, 7))
         assert one.program(attack.drawn(one, 3, 7)) != one.program(attack.drawn(one, 4, 7))
+
+
+def test_each_promise_is_on_a_page() -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    assert [one.name for one in ATTACKS.values() if not (docs / f"{one.page}.md").is_file()] == []
 
 
 # For each attack what a defect would leave: the line that spoils the result, and what is then broken.
@@ -137,6 +143,10 @@ SPOILED = {
     ),
     "stops_among_obstacles": (
         "stops = [(said, q + 1e-3 * np.arange(len(q))[:, None]) for said, q in stops]",
+        "an arm is later at rest than its stop said",
+    ),
+    "any_stop": (
+        "q[-1] = q[-1] + 1e-6",
         "an arm is later at rest than its stop said",
     ),
     "state_to_state": (

@@ -49,6 +49,10 @@ WRONG: list[tuple[Any, str]] = [
     ),
     ([{"move": "line", "to": [1.0, 2.0]}], "move 0: 'to' must be a list of 6 numbers, got [1.0, 2.0]"),
     ([{"move": "wait", "seconds": "1"}], "move 0: 'seconds' must be a number, got '1'"),
+    (
+        [{"move": "wait", "seconds": 1.0}, {"move": "wait", "seconds": -1, "name": "rest"}],
+        "move 1: time of move 'rest' must be from 0 to 1000000 s, got -1",
+    ),
     ([{"move": "wait", "seconds": 1.0, "name": 3}], "move 0: 'name' must be a text, got 3"),
     (
         [{"move": "joints", "to": {"p": []}}],

@@ -28,6 +28,14 @@ def test_numbers_come_back_with_the_same_bits(tmp_path: Path) -> None:
             "0.4,1e-3,-2\n1,2,3\n",
             ", line 1: column 'x' is missing; columns found: 0.4, 1e-3, -2; write their names above the numbers",
         ),
+        (
+            "X,Y,Z\n",
+            ", line 1: column 'x' is missing; columns found: X, Y, Z; write 'x' for 'X'",
+        ),
+        (
+            "x,Z,y\n",
+            ", line 1: column 'z' is missing; columns found: x, Z, y; write 'z' for 'Z'",
+        ),
         ("x,y,z,x\n", ", line 1: column 'x' appears twice"),
         ("x,y,z\n1,2,3\n4,5\n", ", line 3: column 'z' is missing"),
         ("x,y,z\n1,2,3,4\n", ", line 2: 4 entries for 3 columns"),

@@ -285,7 +285,7 @@ WRONG: list[tuple[Callable[[], object], str]] = [
     (lambda: door.jacobian(PANDA)(0.0), "q: expected shape (..., 7), one per joint of 'panda', got ()"),
     (
         lambda: door.solve(PANDA)(np.eye(4), np.zeros(6)),
-        "start: expected shape (..., 7), one per joint of 'panda', got (6,)",
+        "start_q: expected shape (..., 7), one per joint of 'panda', got (6,)",
     ),
     (
         lambda: door.solve(PANDA)(np.zeros((3, 2)), Q),

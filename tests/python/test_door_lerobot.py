@@ -1,6 +1,7 @@
 """The door for LeRobot: its calls, in degrees, and streams of poses. Only its signatures need LeRobot itself."""
 
 import ast
+import copy
 import importlib.util
 import inspect
 from collections.abc import Callable
@@ -293,3 +294,28 @@ def test_the_calls_are_those_of_lerobot() -> None:
 
 def test_the_tracker_is_made_by_the_kinematics() -> None:
     assert isinstance(hobby().tracker(HOME, dt=0.02), PoseTracker)
+
+
+# --- entries ------------------------------------------------------------------------------------
+
+
+def test_entries_of_any_kind_are_read_alike() -> None:
+    kinematics, target = hobby(), hobby().forward_kinematics([10, -20, 30, 20, 5, 0])
+    expected = kinematics.inverse_kinematics(HOME, target)
+    spaced = np.repeat(HOME, 2)[::2]
+    for given in (HOME.tolist(), HOME.astype(np.float32), HOME.astype(int), spaced):
+        np.testing.assert_array_equal(kinematics.inverse_kinematics(given, target), expected)
+    np.testing.assert_array_equal(HOME, [0.0, -30.0, 40.0, 30.0, 0.0, 55.0])
+    expected[0] = 1.0  # the caller's own
+
+
+def test_a_copy_of_the_kinematics_is_independent_of_the_first() -> None:
+    first = hobby()
+    entries = copy.deepcopy(first._entries)
+    np.testing.assert_array_equal(entries.q("q", HOME), first._entries.q("q", HOME))
+
+
+@pytest.mark.parametrize("target", [np.eye(3), [0.2, 0.0, 0.1], np.full((4, 4), np.nan), 2.0 * np.eye(4)])
+def test_what_is_no_pose_is_refused(target: object) -> None:
+    with pytest.raises(bik.InvalidInputError, match="target"):
+        hobby().inverse_kinematics(HOME, target)

@@ -235,8 +235,34 @@ def test_a_missing_urdf_file_is_named(tmp_path: Path) -> None:
 def test_urdf_in_another_encoding_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_bytes("<?xml version='1.0'?>\n<robot name='Müller'/>".encode("latin-1"))
-    message = "URDF line 2: byte 0xfc is not UTF-8; save the file with the encoding UTF-8"
+    message = f"{file}: URDF line 2: byte 0xfc is not UTF-8; save the file with the encoding UTF-8"
     assert_told(lambda: bik.Robot.from_urdf(file), Urdf, message)
+
+
+@pytest.mark.parametrize("text", ["<robot", ARM.replace("revolute", "floating", 1)])
+def test_an_error_of_a_file_names_it(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(text)
+    with pytest.raises(Urdf) as of_text:
+        bik.Robot.from_urdf(text)
+    with pytest.raises(Urdf) as of_file:
+        bik.Robot.from_urdf(file)
+    assert str(of_file.value) == f"{file}: {of_text.value}"
+
+
+def test_an_error_of_an_srdf_names_that_file_alone(tmp_path: Path) -> None:
+    urdf, srdf = tmp_path / "arm.urdf", tmp_path / "arm.srdf"
+    urdf.write_text(ARM)
+    srdf.write_text("<sdf/>")
+    wrong = "SRDF line 1: the outermost element must be <robot>, found <sdf>"
+    assert_told(lambda: bik.Robot.from_urdf(urdf, srdf=srdf), Urdf, f"{srdf}: {wrong}")
+    assert_told(lambda: bik.Robot.from_urdf(urdf, srdf="<sdf/>"), Urdf, wrong)
+    srdf.write_bytes("<robot name='Müller'/>".encode("latin-1"))
+    assert_told(
+        lambda: bik.Robot.from_urdf(urdf).with_srdf(srdf),
+        Urdf,
+        f"{srdf}: SRDF line 1: byte 0xfc is not UTF-8; save the file with the encoding UTF-8",
+    )
 
 
 def test_a_file_of_urdf_is_read_by_name_and_by_path(tmp_path: Path) -> None:

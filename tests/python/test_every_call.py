@@ -49,6 +49,8 @@ WORDS = {
     "positions_or_poses": "points|poses",
     "semi_axes": "semi-axes",
     "start_q": "start",
+    "q_or_pose": "joint positions",
+    "seconds": "time",
     "waypoints_q": "waypoints?",
     "start_speed": "speed at the start",
     "end_speed": "speed at the end",

@@ -84,6 +84,23 @@ def test_npz_keeps_every_bit(tmp_path: Path, tracked: bik.TrackResult) -> None:
     np.testing.assert_array_equal(read.coefficients, tracked.trajectory.coefficients)
 
 
+@pytest.mark.parametrize(("name", "written"), [("motion", "motion.npz"), ("motion.dat", "motion.dat")])
+def test_npz_without_ending_is_found_by_its_name(
+    tmp_path: Path, tracked: bik.TrackResult, name: str, written: str
+) -> None:
+    tracked.trajectory.to_npz(tmp_path / name)
+    assert [file.name for file in tmp_path.iterdir()] == [written]
+    assert bik.Trajectory.from_npz(tmp_path / name) == tracked.trajectory
+    with np.load(tmp_path / written) as arrays:
+        np.testing.assert_array_equal(arrays["time"], tracked.trajectory.time)
+
+
+def test_an_npz_file_that_is_missing_is_named_as_given(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError) as caught:
+        bik.Trajectory.from_npz(tmp_path / "motion")
+    assert caught.value.filename == str(tmp_path / "motion")
+
+
 def test_a_tracked_path_survives_csv(tmp_path: Path, tracked: bik.TrackResult) -> None:
     tracked.trajectory.to_csv(tmp_path / "motion.csv")
     read = bik.Trajectory.from_csv(tmp_path / "motion.csv")

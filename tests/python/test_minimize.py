@@ -122,7 +122,8 @@ def test_the_message_says_how_the_search_ended() -> None:
     spent = minimize()
     assert not spent.success
     assert spent.message == (
-        f"best value {spent.value:.6e} after 200 evaluations, when all were spent: raise the budget in stop=Stop(...)"
+        f"best value {spent.value:.6e} after 200 evaluations, when all were spent: raise the budget in stop=Stop(...), "
+        "or say by Stop(value_below=...) what is low enough"
     ).replace("e-0", "e-")
     assert repr(spent) == f"<Minimum BUDGET_SPENT: {spent.message}>"
     stalled = minimize(lambda _: 1.0, solver=bik.papers.PSO(population=10, stall_generations=2))

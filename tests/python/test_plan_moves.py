@@ -1,6 +1,7 @@
 """`plan_moves` against random programs, and by name against what nobody can make."""
 
 import itertools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -292,12 +293,6 @@ def test_the_first_joint_move_suits_the_line_after_it() -> None:
 
 SLOW = Line(shifted(z=-0.1), speed=0.05)
 WRONG: list[tuple[list[Any], str]] = [
-    ([Line(shifted(z=-0.1), speed=-1.0, name="in")], "speed of move 0 'in' must be positive and finite, got -1"),
-    ([SLOW, Line(shifted(), speed=np.nan)], "speed of move 1 must be positive and finite, got NaN"),
-    ([SLOW, Line(shifted(), blend=-0.1)], "blend of move 1 must be zero or more and finite, got -0.1"),
-    ([Wait(-1.0, name="rest")], "time of move 0 'rest' must be from 0 to 1000000 s, got -1"),
-    ([Wait(np.inf)], "time of move 0 must be from 0 to 1000000 s, got inf"),
-    ([Joints(HOME * np.nan)], "joint positions of move 0 must be finite, but joint 'shoulder_pan_joint' is NaN"),
     (
         [Arc(UR5.fk(HOME)[:3, 3], shifted(y=0.1))],
         "move 0: an arc needs three points, and its start is via: for a full circle give another point of it as "
@@ -326,6 +321,27 @@ WRONG: list[tuple[list[Any], str]] = [
         "0.1000 m long: make the blend smaller",
     ),
 ]
+
+
+WRONG_NUMBERS: list[tuple[Callable[[], Any], str]] = [
+    (lambda: Line(shifted(), speed=-1.0, name="in"), "speed of move 'in' must be positive and finite, got -1"),
+    (lambda: Line(shifted(), speed=np.nan), "speed must be positive and finite, got NaN"),
+    (lambda: Line(shifted(), blend=-0.1), "blend must be zero or more and finite, got -0.1"),
+    (lambda: Arc(HOME[:3], shifted(), speed=0.0), "speed must be positive and finite, got 0"),
+    (lambda: Arc(HOME[:3], shifted(), angle=-np.pi), "angle must be positive and finite, got -3.141592653589793"),
+    (lambda: Arc(HOME[:3] * np.nan, shifted()), "via must be finite, but entry 0 is NaN"),
+    (lambda: Joints(HOME, blend=np.inf), "blend must be zero or more and finite, got inf"),
+    (lambda: Joints(HOME * np.nan), "joint positions must be finite, but entry 0 is NaN"),
+    (lambda: Wait(-1.0, name="rest"), "time of move 'rest' must be from 0 to 1000000 s, got -1"),
+    (lambda: Wait(np.inf), "time must be from 0 to 1000000 s, got inf"),
+]
+
+
+@pytest.mark.parametrize(("make", "message"), WRONG_NUMBERS, ids=[message for _, message in WRONG_NUMBERS])
+def test_wrong_numbers_are_refused_where_a_move_is_made(make: Callable[[], Any], message: str) -> None:
+    with pytest.raises(Invalid) as caught:
+        make()
+    assert str(caught.value) == message
 
 
 @pytest.mark.parametrize(("program", "message"), WRONG, ids=[message[:30] for _, message in WRONG])

@@ -176,6 +176,15 @@ def test_a_track_keeps_tip_speeds_in_every_tick(rated: dict[str, float]) -> None
     assert abs(result.q[-1] - free.q[-1]).max() < 1e-3
 
 
+def test_an_arm_at_rest_whose_first_command_is_too_fast_is_slowed() -> None:
+    q = bik.solve(UR5, bik.pose([0.45, 0.0, 0.25], rpy=[np.pi, 0, 0])).q
+    limits = bik.Limits(velocity=1.0, acceleration=200.0, tip_speed=0.25)  # at its velocity after one tick
+    tracker = bik.Tracker(UR5, q, dt=0.01, limits=limits)
+    rows = [q, *(tracker.step([0.3, 0.4, 0.5]).q for _ in range(50))]
+    speed = np.linalg.norm(np.diff(UR5.fk(np.array(rows))[:, :3, 3], axis=0), axis=1) / 0.01
+    assert 0.24 < speed.max() <= 0.25 * (1 + 1e-9)
+
+
 @pytest.mark.parametrize("rated", [{}, {"acceleration": 6.0}, {"acceleration": 6.0, "jerk": 80.0}])
 def test_a_tracker_and_its_stop_keep_tip_speeds(rated: dict[str, float]) -> None:
     q = bik.solve(UR5, bik.pose([0.45, 0.0, 0.25], rpy=[np.pi, 0, 0])).q

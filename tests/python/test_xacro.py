@@ -53,6 +53,14 @@ def refused(inner: str, **options: bool) -> str:
     return message
 
 
+def test_an_error_of_the_expanded_text_names_the_xacro_file(tmp_path: Path) -> None:
+    file = tmp_path / "arm.urdf.xacro"
+    file.write_text('<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro"><link name="base"/></robot>')
+    with pytest.raises(bik.UrdfError) as told:
+        bik.Robot.from_urdf(file)
+    assert str(told.value).startswith(f"{file}, expanded: URDF line 1: <robot> has no <joint>")
+
+
 # --- what is refused ---
 
 ESCAPES = {

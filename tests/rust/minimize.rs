@@ -56,7 +56,7 @@ fn without_a_value_asked_for_the_budget_ends_the_search() {
     let stop = Stop { max_evaluations: 500, ..Stop::default() };
     let found = least(&[-1.0; 2], &[1.0; 2], None, stop).unwrap();
     assert_eq!((found.status, found.evaluations), (Status::BudgetSpent, 500));
-    assert!(found.message().ends_with("when all were spent: raise the budget"));
+    assert!(found.message().ends_with("when all were spent: raise the budget, or say by a value what is low enough"));
 }
 
 #[test]

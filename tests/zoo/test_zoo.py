@@ -36,7 +36,8 @@ def test_every_file_is_in_the_table_or_refused() -> None:
 def test_files_without_an_arm_are_refused_with_a_reason(urdf: str, sentence: str) -> None:
     with pytest.raises(bik.UrdfError) as told:
         bik.Robot.from_urdf(ROBOTS / urdf)
-    assert str(told.value) == sentence
+    of_file = f"{ROBOTS / urdf}: " if sentence.startswith("URDF") else ""
+    assert str(told.value) == of_file + sentence
 
 
 def test_all_links_stand_where_pinocchio_puts_them(entry: Entry) -> None:

@@ -403,6 +403,14 @@ pub enum Error {
         /// Mistake in the problem.
         error: Box<Error>,
     },
+    /// A mistake in a file.
+    #[error("{path}: {error}")]
+    InFile {
+        /// Path of the file, as given.
+        path: String,
+        /// Mistake in the file.
+        error: Box<Error>,
+    },
     /// The operating system cannot start this many threads.
     #[error("cannot start {threads} threads ({problem}): ask for fewer; a single one needs none")]
     NoThreads {
@@ -442,9 +450,17 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
+    /// Names the file of a URDF that cannot be read; other errors stay as they are.
+    pub fn in_urdf_file(self, path: &str) -> Self {
+        match self {
+            Self::Urdf { .. } => Self::InFile { path: path.into(), error: Box::new(self) },
+            other => other,
+        }
+    }
+
     /// Returns the error with these words in place of the plain ones of each setting in its messages.
     pub fn worded(mut self, words: impl Fn(&Setting) -> String + Copy) -> Self {
-        if let Self::InRow { error, .. } | Self::InProblem { error, .. } = &mut self {
+        if let Self::InRow { error, .. } | Self::InProblem { error, .. } | Self::InFile { error, .. } = &mut self {
             **error = error.clone().worded(words);
         }
         for message in self.messages() {

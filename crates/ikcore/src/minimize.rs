@@ -58,7 +58,15 @@ impl Minimum {
         let end = match self.status {
             Status::Solved => "below the requested value".into(),
             Status::Stalled => "no further progress: try another start or seed, or MultiStart".into(),
-            Status::BudgetSpent => message!["when all were spent: raise the ", Setting::Budget],
+            Status::BudgetSpent => {
+                message![
+                    "when all were spent: raise the ",
+                    Setting::Budget,
+                    ", or say by ",
+                    Setting::EnoughValue,
+                    " what is low enough"
+                ]
+            }
             Status::TimeUp => "when the time was up: raise max_time".into(),
             _ => "when it was stopped: run again to finish".into(),
         };

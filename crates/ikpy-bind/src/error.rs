@@ -26,7 +26,7 @@ struct Classes {
 impl Classes {
     fn of(&self, error: &Error) -> &Py<PyType> {
         match error {
-            Error::InRow { error, .. } | Error::InProblem { error, .. } => self.of(error),
+            Error::InRow { error, .. } | Error::InProblem { error, .. } | Error::InFile { error, .. } => self.of(error),
             Error::UnknownRobot { .. }
             | Error::UnknownLink { .. }
             | Error::UnknownTip { .. }
@@ -135,7 +135,7 @@ pub fn raise(error: Error) -> PyErr {
 /// Returns advice for Python callers, which is appended to the message of an error.
 fn remedy(error: &Error) -> &'static str {
     match error {
-        Error::InRow { error, .. } | Error::InProblem { error, .. } => remedy(error),
+        Error::InRow { error, .. } | Error::InProblem { error, .. } | Error::InFile { error, .. } => remedy(error),
         Error::OutsideLimits { value, lower, upper, .. }
             if value.abs() > TAU && (*lower..=*upper).contains(&value.to_radians()) =>
         {

@@ -9,6 +9,7 @@ mod goal;
 mod hash;
 mod ik;
 mod indexing;
+mod joint_entries;
 mod joint_order;
 mod keep;
 mod limits;
@@ -85,6 +86,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     tracking::register(module)?;
     module.add_class::<trajectory::PyTrajectory>()?;
     gate::install(module)?;
+    // Only the package itself calls it: without gates.
+    module.add_class::<joint_entries::PyJointEntries>()?;
     // Removes `__all__`: the package lists the public names, and a second list would become outdated.
     module.dict().del_item("__all__")
 }

@@ -246,7 +246,8 @@ impl PyTrajectory {
         python_calls::write(slf.py(), "to_csv", (&slf, file, dt))
     }
 
-    /// Writes knots and coefficients as npz. The file appears complete or not at all.
+    /// Writes knots and coefficients as npz. The file appears complete or not at all; a name without ending gets ".npz", as by
+    /// `numpy.savez`.
     fn to_npz(slf: Bound<'_, Self>, file: Bound<'_, PyAny>) -> PyResult<()> {
         python_calls::write(slf.py(), "to_npz", (&slf, file))
     }

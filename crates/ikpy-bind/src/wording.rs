@@ -17,6 +17,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::Prefer(which) => return format!("prefer=\"{which}\""),
         Setting::WithoutRobot(kind) => return format!("{kind}.without_robot(robot, q)"),
         Setting::Budget => "budget in stop=Stop(...)",
+        Setting::EnoughValue => "Stop(value_below=...)",
         Setting::MethodWithSolver => "method=TPBSO(solver=...)",
         Setting::Tip => "tip=",
         Setting::OneTask => "task= for all tips",

@@ -275,7 +275,7 @@ def _row_count(inputs: Sequence[Any], starts: bool) -> int:
             shape = f"({array.shape[0]},)" if array.ndim == 1 else f"({', '.join(map(str, array.shape))})"
             raise InvalidInputError(f"targets: expected poses (m, 4, 4) or positions (m, 3), got shape {shape}")
         if array.shape[0] != rows:
-            why = ", one per target" if what == "starts" else " as for the first tip"
+            why = ", one per target" if what == "start_q" else " as for the first tip"
             raise InvalidInputError(f"{what}: expected {counted(rows, 'row')}{why}, got {array.shape[0]}")
     return rows
 

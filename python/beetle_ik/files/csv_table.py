@@ -57,21 +57,24 @@ def _text(file: str | os.PathLike[str]) -> str:
 
 
 def _check_header(file: str | os.PathLike[str], columns: list[str], required: Sequence[str]) -> None:
-    found = (listed(columns) or "none") + _header_advice(columns)
     for name in required:
         if name not in columns:
+            found = (listed(columns) or "none") + _header_advice(columns, name)
             raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' is missing; columns found: {found}")
     for i, name in enumerate(columns):
         if name in columns[:i]:
             raise InvalidInputError(f"{os.fspath(file)}, line 1: column '{name}' appears twice")
 
 
-def _header_advice(columns: list[str]) -> str:
-    """Suggests how to repair a header that lacks a column."""
+def _header_advice(columns: list[str], missing: str) -> str:
+    """Suggests how to repair a header that lacks the column `missing`."""
     if len(columns) == 1 and any(mark in columns[0] for mark in ";\t"):
         return "; separate them by commas"
     if columns and all(_is_number(name) for name in columns):
         return "; write their names above the numbers"
+    otherwise = [name for name in columns if name.lower() == missing.lower()]
+    if otherwise:
+        return f"; write '{missing}' for '{otherwise[0]}'"
     return ""
 
 

@@ -7,8 +7,6 @@ produces: CSV then stores positions and velocities, and reads back as cubics.
 """
 
 import os
-import zipfile
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +15,8 @@ from .._core import InvalidInputError, Trajectory
 from ..calls.text import listed
 from .csv_table import read_table, write_table
 from .derivatives import has_continuous_acceleration
-from .whole import path_of, whole_file
+from .npz import read_arrays, with_ending
+from .whole import whole_file
 
 # Columns are named "q:joint", "qd:joint", "qdd:joint": position, velocity and acceleration of each joint.
 _DERIVATIVES = ("q", "qd", "qdd")
@@ -94,8 +93,8 @@ def _joint_columns(
 
 
 def to_npz(trajectory: Trajectory, file: str | os.PathLike[str]) -> None:
-    """Writes the trajectory's knots, coefficients and joint names as npz."""
-    with whole_file(file) as stream:
+    """Writes the trajectory's knots, coefficients and joint names as npz; a name without ending gets .npz."""
+    with whole_file(with_ending(file)) as stream:
         np.savez(
             stream,
             time=trajectory.time,
@@ -126,23 +125,3 @@ def from_npz(file: str | os.PathLike[str]) -> Trajectory:
             f"got shape {joint_names.shape} of {joint_names.dtype}"
         )
     return Trajectory(stored["time"], stored["coefficients"], joint_names=joint_names.tolist())
-
-
-def read_arrays(file: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
-    """Returns all arrays of an npz file.
-
-    Raises:
-        InvalidInputError: the file, which the message names, is not an npz file or is damaged.
-    """
-    with path_of(file).open("rb") as stream:
-        if not zipfile.is_zipfile(stream):
-            raise InvalidInputError(f"{os.fspath(file)}: not an npz file")
-        stream.seek(0)
-        try:
-            archive = np.load(stream, allow_pickle=False)
-            if isinstance(archive, np.ndarray):  # an npy file with something behind it
-                raise ValueError("it holds a single array")
-            with archive:
-                return {name: archive[name] for name in archive.files}
-        except Exception as error:  # numpy and zipfile raise a dozen kinds for damage
-            raise InvalidInputError(f"{os.fspath(file)}: damaged npz file: {error!s:.200}") from error

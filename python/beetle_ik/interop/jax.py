@@ -17,11 +17,8 @@ import numpy as np
 from .._core import InvalidInputError, Robot
 from ..installed.needs import library
 from ..scenes import Scene
-from .derivatives import checks
-from .derivatives.curvature import curvature, require_single_joints
-from .derivatives.following import following, solutions
-from .derivatives.nearest import distances, gradients
-from .derivatives.rows import in_rows
+from .derivatives import checks, functions
+from .derivatives.curvature import require_single_joints
 
 Array: TypeAlias = Any  # jax.Array
 
@@ -41,7 +38,6 @@ def fk(robot: Robot, *, link: str | None = None) -> Callable[[Array], Array]:
         UnknownNameError: no link of that name; the message lists them.
     """
     checks.of_robot(robot)
-    robot.fk(np.zeros(robot.dof), link=link)  # an unknown link is an error here, not in a callback
     differentiable = _fk(robot, link)
     return lambda q: differentiable(_joints("q", q, robot))
 
@@ -62,7 +58,6 @@ def jacobian(robot: Robot, *, link: str | None = None) -> Callable[[Array], Arra
         UnknownNameError: no link of that name; the message lists them.
     """
     checks.of_robot(robot)
-    robot.jacobian(np.zeros(robot.dof), link=link)
     differentiable = _jacobian(robot, link)
     return lambda q: differentiable(_joints("q", q, robot))
 
@@ -129,7 +124,6 @@ def clearance(robot: Robot, scene: Any = None) -> Callable[[Array], Array]:
         InvalidInputError: not a `Robot`, a robot without bodies, another length of q, or a second derivative.
     """
     checks.of_robot(robot)
-    distances(robot, checks.scene_of(scene), np.zeros((1, robot.dof)))  # a robot without bodies is an error here
     differentiable = _clearance(robot, checks.scene_of(scene))
     return lambda q: differentiable(_joints("q", q, robot))
 
@@ -157,8 +151,8 @@ def smoothness(path: Array, *, order: int = 2, weights: Any = 1.0) -> Array:
 
 @lru_cache(maxsize=64)
 def _fk(robot: Robot, link: str | None) -> Callable[[Array], Array]:
-    jnp, tips = _jax().numpy, checks.axis_of_tips(robot, link)
-    jacobian_of = _jacobian(robot, link)
+    jnp, compute = _jax().numpy, functions.poses(robot, link)
+    jacobian_of, tips = _jacobian(robot, link), checks.axis_of_tips(robot, link)
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
         (q,), (motion,) = primals, tangents
@@ -166,29 +160,21 @@ def _fk(robot: Robot, link: str | None) -> Callable[[Array], Array]:
         motions = motion[..., None, :] if tips else motion
         return pose, _moved(pose, jnp.einsum("...ij,...j->...i", jacobian_of(q), motions))
 
-    differentiable = _with_rule(
-        lambda q: _call(partial(robot.fk, link=link), (q,), (1,), (*tips, 4, 4)),
-        rule,
-    )
+    differentiable = _with_rule(partial(_call, compute), rule)
     return differentiable
 
 
 @lru_cache(maxsize=64)
 def _jacobian(robot: Robot, link: str | None) -> Callable[[Array], Array]:
-    jnp = _jax().numpy
-    bend = _last("a Jacobian", partial(curvature, robot, link), (6, robot.dof, robot.dof))
+    jnp, compute = _jax().numpy, functions.jacobians(robot, link)
+    bend = _last("a Jacobian", functions.curvatures(robot, link))
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
         (q,), (motion,) = primals, tangents
         require_single_joints(robot, link)
         return differentiable(q), jnp.einsum("...ijk,...k->...ij", bend(q), motion)
 
-    differentiable = _with_rule(
-        lambda q: _call(
-            partial(robot.jacobian, link=link), (q,), (1,), (*checks.axis_of_tips(robot, link), 6, robot.dof)
-        ),
-        rule,
-    )
+    differentiable = _with_rule(partial(_call, compute), rule)
     return differentiable
 
 
@@ -196,10 +182,10 @@ def _jacobian(robot: Robot, link: str | None) -> Callable[[Array], Array]:
 def _solve(robot: Robot, rows: int, damping: float, from_start: bool) -> Callable[..., tuple[Array, Array]]:
     jnp, several = _jax().numpy, len(robot.tips) > 1
     follow = _following(robot, rows, damping)
-    axes = (3 if several else 2 if rows == 6 else 1, 1)[: 1 + from_start]
+    solved = functions.solved(robot, (3 if several else 2 if rows == 6 else 1, 1)[: 1 + from_start])
 
     def compute(*given: Array) -> tuple[Array, Array]:
-        found = _call(partial(solutions, robot), given, axes, (robot.dof + 1,))
+        found = _call(solved, *given)
         return found[..., :-1], found[..., -1]
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Any, Any]:
@@ -220,7 +206,6 @@ def _solve(robot: Robot, rows: int, damping: float, from_start: bool) -> Callabl
 def _following(robot: Robot, rows: int, damping: float) -> Callable[[Array, Array], Array]:
     """Returns J^+ and I - J^+ J side by side, as a function of a solution, with the derivative of a pseudoinverse."""
     jax = _jax()
-    size = rows * len(robot.tips) + robot.dof
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
         ways = differentiable(*primals)
@@ -234,22 +219,20 @@ def _following(robot: Robot, rows: int, damping: float) -> Callable[[Array, Arra
         bent = gram @ turned @ left + rest @ turned @ _transposed(inverse) @ inverse - inverse @ change @ inverse
         return ways, jax.numpy.concatenate((bent, -(bent @ jacobian + inverse @ change)), axis=-1)
 
-    differentiable = _with_rule(
-        lambda q, reached: _call(partial(following, robot, rows, damping), (q, reached), (1, 0), (robot.dof, size)),
-        rule,
-    )
+    differentiable = _with_rule(partial(_call, functions.ways(robot, rows, damping)), rule)
     return differentiable
 
 
 @lru_cache(maxsize=64)
 def _clearance(robot: Robot, scene: Scene) -> Callable[[Array], Array]:
     jnp = _jax().numpy
-    gradient = _last("a distance", partial(gradients, robot, scene), (robot.dof,))
+    compute = functions.clearances(robot, scene)
+    gradient = _last("a distance", functions.clearance_gradients(robot, scene))
 
     def rule(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
         return differentiable(*primals), jnp.sum(gradient(*primals) * tangents[0], axis=-1)
 
-    differentiable = _with_rule(lambda q: _call(partial(distances, robot, scene), (q,), (1,), ()), rule)
+    differentiable = _with_rule(partial(_call, compute), rule)
     return differentiable
 
 
@@ -276,26 +259,24 @@ def _with_rule(compute: Callable[..., Any], rule: Callable[..., Any]) -> Callabl
     return function  # type: ignore[no-any-return]
 
 
-def _last(what: str, compute: Callable[..., Any], shape: tuple[int, ...]) -> Callable[[Array], Array]:
+def _last(what: str, compute: functions.RowFunction) -> Callable[[Array], Array]:
     """Returns a function of q that says so if it is differentiated."""
 
     def refuse(_primals: tuple[Array, ...], _tangents: tuple[Array, ...]) -> Any:
         raise InvalidInputError(f"interop.jax has no higher derivative of {what}")
 
-    return _with_rule(lambda q: _call(compute, (q,), (1,), shape), refuse)
+    return _with_rule(partial(_call, compute), refuse)
 
 
-def _call(
-    compute: Callable[..., Any], arrays: tuple[Array, ...], ndims: tuple[int, ...], shape: tuple[int, ...]
-) -> Array:
+def _call(compute: functions.RowFunction, *arrays: Array) -> Array:
     """Calls the core on all rows at once, in float64; the result has the type of the arrays."""
     jax = _jax()
     kind = jax.numpy.result_type(*arrays)
-    rows = np.broadcast_shapes(*(array.shape[: array.ndim - n] for array, n in zip(arrays, ndims, strict=True)))
-    result = jax.ShapeDtypeStruct(rows + shape, kind)
+    rows = np.broadcast_shapes(*(array.shape[: array.ndim - n] for array, n in zip(arrays, compute.ndims, strict=True)))
+    result = jax.ShapeDtypeStruct(rows + compute.shape, kind)
 
     def computed(*values: Any) -> Any:
-        return in_rows(compute, *values, ndims=ndims, shape=shape).astype(kind, copy=False)
+        return compute(*values).astype(kind, copy=False)
 
     def fill(_context: Any, out: Any, *values: Any) -> None:
         np.asarray(out)[...] = computed(*map(np.asarray, values))

@@ -1,13 +1,12 @@
 """Arrays of joint positions in the order of others, with entries of joints that do not move the arm."""
 
-import math
 from collections.abc import Collection, Sequence
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._core import InvalidInputError, Robot, UnknownNameError
+from .._core import InvalidInputError, Robot, UnknownNameError, _JointEntries
 from ..calls.text import listed
 
 Array: TypeAlias = NDArray[np.float64]
@@ -47,35 +46,16 @@ class JointEntries:
         # From the units of the entries to rad and m.
         self._unit = np.where(turns, np.pi / 180, 1.0)
         self.at = [self.names.index(joint) for joint in robot.joint_names]
-        self._places = _indices(self.at)
-
-    def read(self, name: str, values: ArrayLike) -> Array:
-        """Returns an array of entries (k,), a copy, checked."""
-        try:
-            entries = np.array(values, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InvalidInputError(f"{name} must be an array of numbers, got {values!r:.60}") from None
-        if entries.ndim != 1 or len(entries) < len(self.names):
-            raise InvalidInputError(
-                f"{name}: expected at least {len(self.names)} entries, one per joint name, got shape {entries.shape}"
-            )
-        ours = entries[self._places]
-        if not math.isfinite(ours @ ours):  # cheap; that of finite entries may overflow
-            finite = np.isfinite(ours)
-            if not finite.all():
-                at = self.at[int(np.argmin(finite))]
-                raise InvalidInputError(f"{name}: joint '{self.names[at]}' must be finite, got {entries[at]}")
-        return entries
-
-    def q(self, entries: Array) -> Array:
-        """Returns the joint positions of the arm (n,) (rad, m)."""
-        return entries[self._places] * self._unit
-
-    def placed(self, q: Array, entries: Array) -> Array:
-        """Returns the entries with the joint positions q (n,) (rad, m) in their places."""
-        placed = entries.copy()
-        placed[self._places] = q / self._unit
-        return placed
+        entries = _JointEntries(robot, self.at, len(self.names), self._unit.tolist())
+        # The calls of a native class, without a call of Python around each: a solve may take only two microseconds.
+        self.read = entries.read
+        """`read(name, values)` returns the entries (k,), a copy, checked; `name` is that of the argument."""
+        self.q = entries.q
+        """`q(name, values)` returns the joint positions of the arm (n,) (rad, m)."""
+        self.inside = entries.inside
+        """`inside(name, values)` returns them with each at its nearest limit if it is outside."""
+        self.placed = entries.placed
+        """`placed(q, entries)` returns the entries with the joint positions q (n,) (rad, m) in their places."""
 
     def limit(self, name: str, values: ArrayLike) -> Array:
         """Returns limits (n,) (rad, m) of a number or one per joint of the arm, in the order of the names."""
@@ -90,9 +70,3 @@ class JointEntries:
     def most(self, degrees: float) -> Array:
         """Returns a bound (n,) (rad) of the joints that turn; joints that slide have none."""
         return np.where(self._unit == 1.0, np.inf, degrees * self._unit)
-
-
-def _indices(at: list[int]) -> slice | Array:
-    """Indices of an array; those in a row as a slice, which is faster."""
-    row = slice(at[0], at[0] + len(at))
-    return row if at == list(range(row.start, row.stop)) else np.array(at)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import tasks
-from .._core import InvalidInputError, Limits, Robot, Solution, Status, Step, Tracker, pose, solve
+from .._core import InvalidInputError, Limits, Robot, Solution, Status, Step, Tracker, solve
 from .joint_entries import JointEntries
 from .urdf_joints import moving_joints
 
@@ -72,7 +72,7 @@ class RobotKinematics:
         Raises:
             InvalidInputError: fewer entries than joints, or NaN.
         """
-        return self.robot.fk(self._entries.q(self._entries.read("joint_pos_deg", joint_pos_deg)))
+        return self.robot.fk(self._entries.q("joint_pos_deg", joint_pos_deg))
 
     def inverse_kinematics(
         self,
@@ -101,14 +101,12 @@ class RobotKinematics:
             InvalidInputError: fewer entries than joints, NaN, a matrix that is no pose, a negative weight, or two
                 weights of zero.
         """
-        entries = self._entries.read("current_joint_pos", current_joint_pos)
-        target = pose(matrix=desired_ee_pose)
-        start = self.robot.clip(self._entries.q(entries))
+        start = self._entries.inside("current_joint_pos", current_joint_pos)
         if position_weight is not self._given[0] or orientation_weight is not self._given[1]:
             self._weigh(position_weight, orientation_weight, start)
-        near = self._nearby(start, target)
-        self.result = near if _suffices(near, start) else self._better(near, target)
-        return self._entries.placed(self.result.q, entries)
+        near = self._nearby(start, desired_ee_pose)
+        self.result = result = near if _suffices(near, start) else self._better(near, desired_ee_pose)
+        return self._entries.placed(result.q, current_joint_pos)
 
     def tracker(
         self,
@@ -140,12 +138,11 @@ class RobotKinematics:
             InvalidInputError: fewer entries than joints, NaN, limits of a wrong length, or a weight that is negative.
             LimitError: a joint that starts more than 5 degrees (5 mm) outside its position limits.
         """
-        entries = self._entries.read("current_joint_pos", current_joint_pos)
         limit = self._entries.limit
         gentle = np.minimum(self.robot.velocity_limit, self._entries.most(_GENTLE_SPEED))
         tracker = Tracker(
             self.robot,
-            self._entries.q(entries),
+            self._entries.q("current_joint_pos", current_joint_pos),
             dt=dt,
             task=_task(*_checked(position_weight, orientation_weight)),
             limits=Limits(
@@ -155,7 +152,7 @@ class RobotKinematics:
             ),
             timeout=timeout,
         )
-        return PoseTracker(tracker, self._entries, entries)
+        return PoseTracker(tracker, self._entries, self._entries.read("current_joint_pos", current_joint_pos))
 
     def _weigh(self, position: float, orientation: float, q: Array) -> None:
         """Makes the tracker that descends, by ticks without velocity limits."""
@@ -165,7 +162,7 @@ class RobotKinematics:
         self._local = Tracker(self.robot, q, dt=1.0, task=self._task, limits=unlimited, recover=False)
         self._given = (position, orientation)
 
-    def _nearby(self, q: Array, target: Array) -> Step:
+    def _nearby(self, q: Array, target: ArrayLike) -> Step:
         """Descends from q."""
         self._local.reset(q)
         for _ in range(_STEPS):
@@ -174,7 +171,7 @@ class RobotKinematics:
                 break
         return step
 
-    def _better(self, near: Step, target: Array) -> Solution | Step:
+    def _better(self, near: Step, target: ArrayLike) -> Solution | Step:
         """Returns the solution of a search where that is much nearer to the target, or at the same place."""
         found = solve(self.robot, target, task=self._task, start_q=near.q)
         if found.success or np.abs(found.q - near.q).max() < _SAME_PLACE:
@@ -226,9 +223,8 @@ class PoseTracker:
 
     def reset(self, current_joint_pos: ArrayLike) -> None:
         """Begins again at these joint positions, at rest."""
-        entries = self._entries.read("current_joint_pos", current_joint_pos)
-        self.tracker.reset(self._entries.q(entries))
-        self._last = entries
+        self.tracker.reset(self._entries.q("current_joint_pos", current_joint_pos))
+        self._last = self._entries.read("current_joint_pos", current_joint_pos)
 
     @property
     def time(self) -> float:

@@ -6,18 +6,13 @@ tensors on a GPU are copied there and back. A row with NaN gives NaN. Derivative
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, TypeAlias
-
-import numpy as np
 
 from .._core import InvalidInputError, Robot
 from ..installed.needs import library
-from .derivatives import checks
-from .derivatives.curvature import curvature, require_single_joints
-from .derivatives.following import following, solutions
-from .derivatives.nearest import distances, gradients
-from .derivatives.rows import in_rows
+from .derivatives import checks, functions
+from .derivatives.curvature import require_single_joints
 
 Tensor: TypeAlias = Any  # torch.Tensor
 
@@ -37,14 +32,14 @@ def fk(robot: Robot, *, link: str | None = None) -> Callable[[Tensor], Tensor]:
         UnknownNameError: no link of that name; the message lists them.
     """
     checks.of_robot(robot)
-    robot.fk(np.zeros(robot.dof), link=link)  # an unknown link is an error here
+    compute = functions.poses(robot, link)
     tips, jacobian_of = checks.axis_of_tips(robot, link), jacobian(robot, link=link)
 
     def pull(gradient: Tensor, pose: Tensor, q: Tensor) -> tuple[Tensor]:
         pulled = _torch().einsum("...ij,...i->...j", jacobian_of(q), _wrench(gradient, pose))
         return (pulled.sum(-2) if tips else pulled,)
 
-    rule = _Rule(partial(robot.fk, link=link), (1,), (*tips, 4, 4), pull)
+    rule = _Rule(compute, pull)
     return lambda q: _apply(rule, _joints("q", q, robot))
 
 
@@ -64,14 +59,14 @@ def jacobian(robot: Robot, *, link: str | None = None) -> Callable[[Tensor], Ten
         UnknownNameError: no link of that name; the message lists them.
     """
     checks.of_robot(robot)
-    robot.jacobian(np.zeros(robot.dof), link=link)
-    bend = _last("a Jacobian", partial(curvature, robot, link), (1,), (6, robot.dof, robot.dof))
+    compute = functions.jacobians(robot, link)
+    bend = _last("a Jacobian", functions.curvatures(robot, link))
 
     def pull(gradient: Tensor, _jacobian: Tensor, q: Tensor) -> tuple[Tensor]:
         require_single_joints(robot, link)
         return (_torch().einsum("...ij,...ijk->...k", gradient, _apply(bend, q)),)
 
-    rule = _Rule(partial(robot.jacobian, link=link), (1,), (*checks.axis_of_tips(robot, link), 6, robot.dof), pull)
+    rule = _Rule(compute, pull)
     return lambda q: _apply(rule, _joints("q", q, robot))
 
 
@@ -122,13 +117,13 @@ def clearance(robot: Robot, scene: Any = None) -> Callable[[Tensor], Tensor]:
     """
     checks.of_robot(robot)
     scene = checks.scene_of(scene)
-    distances(robot, scene, np.zeros((1, robot.dof)))  # a robot without bodies is an error here
-    slope = _last("a distance", partial(gradients, robot, scene), (1,), (robot.dof,))
+    compute = functions.clearances(robot, scene)
+    slope = _last("a distance", functions.clearance_gradients(robot, scene))
 
     def pull(gradient: Tensor, _distance: Tensor, q: Tensor) -> tuple[Tensor]:
         return (gradient[..., None] * _apply(slope, q),)
 
-    rule = _Rule(partial(distances, robot, scene), (1,), (), pull)
+    rule = _Rule(compute, pull)
     return lambda q: _apply(rule, _joints("q", q, robot))
 
 
@@ -154,16 +149,13 @@ def smoothness(path: Tensor, *, order: int = 2, weights: Any = 1.0) -> Tensor:
 class _Rule:
     """A function of the core; `pull(gradient, result, *inputs)` returns the gradients of the inputs."""
 
-    compute: Callable[..., Any]
-    ndims: tuple[int, ...]
-    shape: tuple[int, ...]
+    compute: functions.RowFunction
     pull: Callable[..., tuple[Tensor, ...]]
 
 
 def _solving(robot: Robot, rows: int, damping: float, ndims: tuple[int, ...]) -> _Rule:
-    several, n = len(robot.tips) > 1, robot.dof
-    size = rows * len(robot.tips)
-    follow = _last("a solution", partial(following, robot, rows, damping), (1, 0), (n, size + n))
+    several, size = len(robot.tips) > 1, rows * len(robot.tips)
+    follow = _last("a solution", functions.ways(robot, rows, damping))
 
     def pull(gradient: Tensor, found: Tensor, target: Tensor, *_start: Tensor) -> tuple[Tensor, ...]:
         ways = _apply(follow, found[..., :-1], found[..., -1])
@@ -174,23 +166,24 @@ def _solving(robot: Robot, rows: int, damping: float, ndims: tuple[int, ...]) ->
         by_target = _change(by_target, target) if rows == 6 else by_target
         return (by_target, pulled[..., size:])[: len(ndims)]
 
-    return _Rule(partial(solutions, robot), ndims, (n + 1,), pull)
+    return _Rule(functions.solved(robot, ndims), pull)
 
 
-def _last(what: str, compute: Callable[..., Any], ndims: tuple[int, ...], shape: tuple[int, ...]) -> _Rule:
+def _last(what: str, compute: functions.RowFunction) -> _Rule:
     """Returns a rule that says so if it is differentiated."""
 
     def refuse(*_values: Tensor) -> Any:
         raise InvalidInputError(f"interop.torch has no higher derivative of {what}")
 
-    return _Rule(compute, ndims, shape, refuse)
+    return _Rule(compute, refuse)
 
 
 def _apply(rule: _Rule, *tensors: Tensor) -> Tensor:
     """Applies a function to tensors whose leading axes are broadcast first, so that autograd sums over them."""
     torch = _torch()
-    leading = torch.broadcast_shapes(*(x.shape[: x.ndim - k] for x, k in zip(tensors, rule.ndims, strict=True)))
-    spread = [x.expand(leading + x.shape[x.ndim - k :]) for x, k in zip(tensors, rule.ndims, strict=True)]
+    ndims = rule.compute.ndims
+    leading = torch.broadcast_shapes(*(x.shape[: x.ndim - k] for x, k in zip(tensors, ndims, strict=True)))
+    spread = [x.expand(leading + x.shape[x.ndim - k :]) for x, k in zip(tensors, ndims, strict=True)]
     return _function().apply(rule, *spread)
 
 
@@ -204,7 +197,7 @@ def _function() -> Any:
         @staticmethod
         def forward(rule: _Rule, *tensors: Tensor) -> Tensor:
             values = [tensor.detach().cpu().numpy() for tensor in tensors]
-            result = in_rows(rule.compute, *values, ndims=rule.ndims, shape=rule.shape)
+            result = rule.compute(*values)
             kind = torch.result_type(*tensors) if len(tensors) == 2 else tensors[0].dtype
             return torch.from_numpy(result).to(device=tensors[0].device, dtype=kind)
 

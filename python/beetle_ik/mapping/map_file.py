@@ -12,7 +12,7 @@ from .._core import BeetleIkError, InvalidInputError, MapGrid, Robot
 from ..calls.arguments import require
 from ..chunked.fingerprint import sealed
 from ..chunked.finished import read_finished
-from ..files.trajectories import read_arrays
+from ..files.npz import read_arrays, with_ending
 from ..files.whole import path_of, whole_file
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def write(file: str | os.PathLike[str], robot: Robot, grid: MapGrid, results: Ma
     """Writes a map; `results` are its arrays. The file appears complete or not at all."""
     kept = {**attached(robot, grid), **results}
     arrays: dict[str, Any] = {"reachability_map": np.array(FORMAT), **kept, _SEAL: _seal(kept)}
-    with whole_file(file) as stream:
+    with whole_file(with_ending(file)) as stream:
         np.savez_compressed(stream, **arrays)
 
 

@@ -99,7 +99,10 @@ class ReachabilityMap:
         return drawn(self, kind)
 
     def to_npz(self, file: str | os.PathLike[str]) -> None:
-        """Writes the map, with its robot, to a compressed npz file, from which `load` returns an equal one."""
+        """Writes the map, with its robot, to a compressed npz file, from which `load` returns an equal one.
+
+        A name without ending gets .npz.
+        """
         results = {name: getattr(self, name) for name in ("bits", *QUALITY) if getattr(self, name) is not None}
         write(file, self.robot, self.grid, results)
 

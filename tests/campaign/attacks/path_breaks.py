@@ -20,7 +20,7 @@ class PathBreaks(Attack):
 
     name = "path_breaks"
     promise = "Between its breaks a plan follows the path, within its limits, and what can be followed has no break"
-    page = "docs/planning.md"
+    page = "planning"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         count = 2 if hard else int(random.integers(2, 4))

@@ -32,7 +32,7 @@ class TipLimits(Attack):
 
     name = "tip_limits"
     promise = "Limits of tips hold at every instant of plans and timings, and looser ones are not slower"
-    page = "docs/limits.md"
+    page = "limits"
 
     def draw(self, random: np.random.Generator, hard: bool) -> Case:
         joints = arms.arm(random, hard, (2, 7))

@@ -680,7 +680,7 @@ fn packages_are_found_in_given_folders() {
     let message = fitted(&file, vec![]).unwrap_err().to_string();
     let says = "URDF: the mesh 'package://arms/meshes/cube.stl' of link 'hand' is not found: give package_dirs, or \
                 primitive shapes alone to do without; looked for ";
-    assert!(message.starts_with(says), "{message}");
+    assert!(message.starts_with(&format!("{file}: {says}")), "{message}");
     // Nobody needs it otherwise.
     let robot = Robot::from_urdf(&file, None, None).unwrap();
     assert_eq!(robot.unread_collision_shapes(), ["a mesh of link 'hand'"]);

@@ -143,6 +143,34 @@ fn a_tray_stops_in_the_time_that_is_said() {
 }
 
 #[test]
+fn a_tray_stands_after_a_stop_with_little_jerk_in_a_tick() {
+    let robot = robot();
+    let home = forward([0.5, 0.25, 0.9], [0.0; 3]);
+    let q = start(&robot, &home);
+    let constant = |value| vec![Profile::Constant(value); robot.dof()];
+    for jerk in [0.8, 8.0] {
+        let limits = Limits::of(&robot).replace(Field::Acceleration, constant(1.0)).unwrap();
+        let options = TrackOptions {
+            limits: Some(limits.replace(Field::Jerk, constant(jerk)).unwrap()),
+            ..TrackOptions::default()
+        };
+        for ticks in 1..12 {
+            let mut session = Session::new(&robot, &q, 1e-3, &options).unwrap();
+            for _ in 0..3 * ticks {
+                let arrival: Arrival = targets(&forward([0.6, 0.1, 1.0], [0.0; 3])).into_iter().collect();
+                session.advance(Some(arrival), &mut Unattended).unwrap();
+            }
+            let said = (session.stop() / 1e-3).round() as usize;
+            for tick in 0..said + 60 {
+                session.advance(None, &mut Unattended).unwrap();
+                let fastest = session.qd().iter().fold(0.0, |fastest: f64, rate| fastest.max(rate.abs()));
+                assert!(tick <= said || fastest < 1e-12, "{fastest} rad/s, {} ticks too late", tick - said);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_pair_that_is_apart_comes_together_and_then_stays() {
     let robot = robot();
     let home = forward([0.5, 0.25, 0.9], [0.0; 3]);

@@ -142,7 +142,7 @@ pub(super) fn plan(
 fn refuse_too_heavy(what: &str, limits: &ConstantLimits, q: &[f64]) -> Result<()> {
     match limits.too_heavy(q) {
         None => Ok(()),
-        Some(problem) => Err(Error::Unreachable { what: what.into(), problem: problem.into() }),
+        Some(heavy) => Err(Error::Infeasible { problem: format!("at {what} {heavy}").into() }),
     }
 }
 

@@ -10,6 +10,8 @@ pub enum Setting {
     Limit(&'static str),
     /// Budget of a search.
     Budget,
+    /// Value of a function that is low enough.
+    EnoughValue,
     /// Planner: "minmax", "timed" or "tpbso".
     Method(&'static str),
     /// Distance that a motion may leave its path by, of this value.
@@ -101,6 +103,7 @@ impl fmt::Display for Setting {
             Self::First(part) => return write!(f, "a task with the {part} first"),
             Self::Prefer(which) => return write!(f, "the preference '{which}'"),
             Self::Budget => "budget",
+            Self::EnoughValue => "a value",
             Self::MethodWithSolver => "the method 'tpbso'",
             Self::Tip => "its tip",
             Self::OneTask => "one task for all tips",

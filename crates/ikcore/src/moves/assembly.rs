@@ -143,7 +143,8 @@ impl<'a> Assembly<'a> {
                 None => begin + motion.duration(),
             };
             let Some(tool_path) = part.tool_path else {
-                let speed = tip_speed(self.around.robot, &motion, [start - begin, end_of_part - begin])?;
+                let between_corners = [window.begin, window.end()].map(|s| time_at(&times, s));
+                let speed = tip_speed(self.around.robot, &motion, between_corners)?;
                 self.report(part.index, [start, end_of_part], speed, vec![]);
                 start = end_of_part;
                 continue;

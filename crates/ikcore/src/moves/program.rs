@@ -81,26 +81,44 @@ impl Move {
         }
     }
 
+    /// Checks all numbers but those that depend on the robot.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] and [`Error::NotFinite`] name the number.
+    pub fn validate(&self) -> Result<()> {
+        self.check_numbers(&self.name.as_ref().map_or(String::new(), |name| format!(" of move '{name}'")))
+    }
+
     /// Checks numbers and lengths.
     fn check(&self, named: &str, robot: &Robot) -> Result<()> {
-        require_not_negative(&format!("blend of {named}"), self.blend)?;
+        if let MoveKind::Joints(JointGoal::Configuration(q)) = &self.kind {
+            robot.check(&format!("joint positions of {named}"), q)?;
+        }
+        self.check_numbers(&format!(" of {named}"))
+    }
+
+    /// Checks numbers; `of` says of which move, in messages.
+    fn check_numbers(&self, of: &str) -> Result<()> {
+        require_not_negative(&format!("blend{of}"), self.blend)?;
         match &self.kind {
-            MoveKind::Joints(JointGoal::Configuration(q)) => robot.check(&format!("joint positions of {named}"), q)?,
+            MoveKind::Joints(JointGoal::Configuration(q)) => {
+                require_finite(format!("joint positions{of}"), q, |i| format!("entry {i}"))?;
+            }
             MoveKind::Joints(JointGoal::Pose(goal)) | MoveKind::Line { pose: goal, .. } => {
-                pose::checked(&format!("pose of {named}"), *goal)?;
+                pose::checked(&format!("pose{of}"), *goal)?;
             }
             MoveKind::Arc { via, pose: goal, angle, .. } => {
-                require_finite(format!("via of {named}"), via, |i| format!("entry {i}"))?;
-                pose::checked(&format!("pose of {named}"), *goal)?;
-                angle.map_or(Ok(()), |angle| require_positive(&format!("angle of {named}"), angle))?;
+                require_finite(format!("via{of}"), via, |i| format!("entry {i}"))?;
+                pose::checked(&format!("pose{of}"), *goal)?;
+                angle.map_or(Ok(()), |angle| require_positive(&format!("angle{of}"), angle))?;
             }
             MoveKind::Wait(seconds) if (0.0..=LONGEST_WAIT).contains(seconds) => {}
             MoveKind::Wait(seconds) => {
-                let what = format!("time of {named}");
+                let what = format!("time{of}");
                 return Err(Error::out_of_range(what, format!("from 0 to {LONGEST_WAIT} s"), *seconds));
             }
         }
-        self.speed().map_or(Ok(()), |speed| require_positive(&format!("speed of {named}"), speed))
+        self.speed().map_or(Ok(()), |speed| require_positive(&format!("speed{of}"), speed))
     }
 }
 

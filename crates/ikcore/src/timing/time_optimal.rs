@@ -27,8 +27,10 @@ pub struct TimingOptions {
 /// Number of segments before refinement.
 const FIRST_SEGMENTS: usize = 100;
 
-/// Part of the duration that the grid may cost by estimate; it costs two to four times as much. Where torques are limited a segment takes three times as long to compute.
+/// Fraction of the duration that the grid may lose, by estimate. What it loses, compared with a very fine grid, was up to five times as much.
 const CONVERGED: f64 = 1e-4;
+
+/// The same with torque limits, under which a segment takes three times as long to compute.
 const CONVERGED_WITH_TORQUES: f64 = 1e-3;
 
 /// Number of segments if jerk limits are to be kept: the profile then only says where the motion takes its time.

@@ -101,11 +101,12 @@ impl CoupledStop {
     }
 }
 
-/// Whether all joints are nearly at rest and can stop within the next tick.
+/// Whether all joints are nearly at rest, can stop within the next tick, and stand in the one after it.
 fn is_at_rest(state: &JointState, braking: &[Braking]) -> bool {
     let mut joints = state.step.iter().zip(&state.change).zip(braking);
     joints.all(|((step, change), most)| {
-        step.abs() < REST && step.abs() <= most.acceleration && (step + change).abs() <= most.jerk
+        // The change of the last tick is the step that ends in it; in the next tick it is gone.
+        step.abs() < REST.min(most.jerk) && step.abs() <= most.acceleration && (step + change).abs() <= most.jerk
     })
 }
 

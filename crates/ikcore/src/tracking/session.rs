@@ -327,6 +327,12 @@ impl Session {
         self.stopping = true;
         self.follow_from_here();
         self.arm.targets.expect_new();
+        if let Some(torques) = &mut self.torques {
+            self.arm.narrow();
+            self.arm.narrow_to_stop();
+            let others = OtherLimits { safety: self.safety.as_deref_mut(), pace: self.pace.as_deref_mut() };
+            torques.choose_stop(&mut self.arm, others);
+        }
     }
 
     /// Follows the target from where the arm is, without a way back.
@@ -463,10 +469,10 @@ impl Session {
         }
     }
 
-    /// Changes the command `found` to one that keeps the torque limits. The stop of an arm that stops is certified, unless masses have changed.
+    /// Changes the command `found` to one that keeps the torque limits. An arm that stops goes on with its stop, unless masses have changed.
     fn keep_torques(&mut self, settled: bool, found: &mut TickResult) {
         let Some(torques) = &mut self.torques else { return };
-        if found.interrupted || self.stopping && torques.is_certified() {
+        if found.interrupted || self.stopping && torques.goes_on_with_stop(&self.arm, &found.q) {
             return;
         }
         let others = OtherLimits { safety: self.safety.as_deref_mut(), pace: self.pace.as_deref_mut() };

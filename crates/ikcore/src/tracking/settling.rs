@@ -10,7 +10,7 @@ use crate::limits::Limits;
 use crate::task::{Assessment, Target, TargetRow};
 
 /// Time without progress after which an arm settles (s).
-const PATIENCE: f64 = 2.0;
+const PATIENCE: f64 = 1.0;
 
 /// Decrease of an error that counts as progress: relative, and absolute (m, rad); the smaller one counts.
 const NEARER: f64 = 0.02;
@@ -137,8 +137,8 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_that_comes_no_nearer_settles_after_two_seconds() {
-        let near = (199, 203);
+    fn an_arm_that_comes_no_nearer_settles_after_a_second() {
+        let near = (99, 103);
         for error in [0.0, 0.2, 5.0] {
             let tick = settles(&mut watch(), std::iter::repeat(error), true).unwrap();
             assert!((near.0..=near.1).contains(&tick), "{error}: {tick}");

@@ -109,8 +109,9 @@ impl TipPace {
             if largest > 1.0 {
                 return largest;
             }
+            // Of an arm at rest the factor does not grow: all ticks that are left are free.
             let free = (1.0 - factor) / growth - APART;
-            tick += 1 + if free > 0.0 { free as usize } else { 0 };
+            tick += 1 + (free.max(0.0) as usize).min(last);
         }
         largest
     }

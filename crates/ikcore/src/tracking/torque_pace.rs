@@ -58,8 +58,19 @@ pub(super) struct TorquePace {
     held_by: Option<Overload>,
     /// Time since it last changed a command (s).
     free_for: f64,
-    /// Whether the stop after the last command is certified. A payload that changes in the hand ends that.
-    certified: bool,
+    /// What is known of the stop after the last command.
+    known: Known,
+}
+
+/// What is known of a stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// It is within the torque limits.
+    Certified,
+    /// It was chosen, though none was found that is within them.
+    Chosen,
+    /// Nothing, since masses have changed or the arm was put elsewhere.
+    Nothing,
 }
 
 /// What else a command has to satisfy.
@@ -94,19 +105,19 @@ impl TorquePace {
             "limits that vary can ask for more torque than there is; give numbers",
         )?;
         let rows = ConstrainedStep::with_room(limits.dof(), limits.dof());
-        Ok(Some(Box::new(Self { stop, rows, held_by: None, free_for: 0.0, certified: true })))
+        Ok(Some(Box::new(Self { stop, rows, held_by: None, free_for: 0.0, known: Known::Certified })))
     }
 
     /// Checks that the joints can hold the arm at `q`, the argument `what`.
     ///
     /// # Errors
-    /// [`Error::Contradiction`] names joint, torque and limit.
+    /// [`Error::Infeasible`] names joint, torque and limit.
     pub fn require_held(&mut self, what: &str, q: &[f64], robot: &Robot) -> Result<()> {
         self.stop.too_heavy(q).map_or(Ok(()), |overload| {
             let needed = overload.in_words("needs", robot);
             let problem =
                 format!("at {what} {needed}: begin elsewhere, lighten the payload, or raise the torque limit");
-            Err(Error::Contradiction { problem: problem.into() })
+            Err(Error::Infeasible { problem: problem.into() })
         })
     }
 
@@ -124,17 +135,34 @@ impl TorquePace {
 
     /// Forgets what held the arm, and the stop.
     pub fn restart(&mut self) {
-        (self.held_by, self.certified) = (None, false);
+        (self.held_by, self.known) = (None, Known::Nothing);
     }
 
     /// Whether the stop after the last command is certified.
     pub fn is_certified(&self) -> bool {
-        self.certified
+        self.known == Known::Certified
+    }
+
+    /// Chooses the stop of an arm that begins to stop, if nothing is known of the one after its last command: then it takes the time that it
+    /// says from the first tick on.
+    pub fn choose_stop(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>) {
+        if self.known == Known::Nothing {
+            let mut brake = arm.context().braking();
+            self.stop_somehow(arm, &mut others, &mut brake);
+        }
+    }
+
+    /// Looks whether the rest of a chosen stop, which begins with the command `q`, is within the limits. Returns false if nothing was chosen.
+    pub fn goes_on_with_stop(&mut self, arm: &TrackedArm, q: &[f64]) -> bool {
+        if self.known == Known::Chosen && self.within(arm, q).is_ok() {
+            self.known = Known::Certified;
+        }
+        self.known != Known::Nothing
     }
 
     /// What holds the arm back, in words.
     pub fn held_in_words(&self, robot: &Robot) -> Option<String> {
-        let verb = if self.certified { "would need" } else { "needs" };
+        let verb = if self.is_certified() { "would need" } else { "needs" };
         self.held_by.as_ref().map(|overload| overload.in_words(verb, robot))
     }
 
@@ -158,7 +186,7 @@ impl TorquePace {
     pub fn keep(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>, settled: bool, q: &mut Point) -> bool {
         match self.within(arm, q) {
             Ok(used) => {
-                self.certified = true;
+                self.known = Known::Certified;
                 self.free_for += arm.dt;
                 if !settled && self.free_for > HELD {
                     self.held_by = None;
@@ -172,7 +200,8 @@ impl TorquePace {
                 let wanted = q.clone();
                 let part = self.replace(arm, &mut others, failed, q);
                 if let Some(overload) = failed.filter(|overload| overload.is_at_rest || part < SLOWED) {
-                    (self.held_by, self.free_for) = (self.held_by.filter(|_| !self.certified).or(Some(overload)), 0.0);
+                    (self.held_by, self.free_for) =
+                        (self.held_by.filter(|_| !self.is_certified()).or(Some(overload)), 0.0);
                 }
                 *q != wanted
             }
@@ -192,7 +221,7 @@ impl TorquePace {
             self.lead_aside(&arm.context(), q);
             failed = match self.check(arm, others, q) {
                 Ok(()) => {
-                    self.certified = true;
+                    self.known = Known::Certified;
                     return part;
                 }
                 Err(found) => found,
@@ -213,7 +242,7 @@ impl TorquePace {
             write_within(&brake, &wanted, part, q);
             failed = match self.check(arm, others, q) {
                 Ok(()) => {
-                    self.certified = true;
+                    self.known = Known::Certified;
                     return part;
                 }
                 Err(found) => found,
@@ -221,7 +250,7 @@ impl TorquePace {
         }
         arm.set_braking_part(stop_part);
         q.copy_from_slice(&brake);
-        if !self.certified {
+        if !self.is_certified() {
             self.stop_somehow(arm, others, q);
         }
         0.0
@@ -251,7 +280,7 @@ impl TorquePace {
             let brake = arm.context().braking();
             match self.check(arm, others, &brake) {
                 Ok(()) => {
-                    self.certified = true;
+                    self.known = Known::Certified;
                     q.copy_from_slice(&brake);
                     return;
                 }
@@ -266,6 +295,7 @@ impl TorquePace {
         }
         arm.set_braking_part(least.map_or(before, |(part, ..)| part));
         q.copy_from_slice(&arm.context().braking());
+        self.known = Known::Chosen;
         self.held_by = least.map(|(.., overload)| overload);
     }
 

@@ -49,7 +49,7 @@ impl PyMoveReport {
         let name = name.as_ref().map_or_else(String::new, |name| format!(" '{name}'"));
         let bound: Vec<String> = bound_by.iter().map(words).collect();
         let bound = if bound.is_empty() { String::new() } else { format!(", bound by {}", bound.join(", ")) };
-        format!("<MoveReport{name}: {start:.3} to {end:.3} s, up to {speed:.4} m/s{bound}>")
+        format!("<MoveReport{name}: {start:.3} to {end:.3} s, up to {speed:.4} m/s between blends{bound}>")
     }
 }
 

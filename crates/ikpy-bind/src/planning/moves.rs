@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::convert::{array, copied, point, pose_array, rigid, rigid_rows, shape_text, summary};
-use crate::error::invalid;
+use crate::error::{invalid, raise};
 use crate::hash::content_hash;
 use crate::options::{NewArguments, Shown, keywords, list_text};
 
@@ -74,14 +74,16 @@ fn place(position: &[f64; 3]) -> String {
     list_text(position)
 }
 
+/// Makes a move, which is checked as far as it can be without a robot.
 fn made<T: pyo3::PyClass<BaseType = PyMove>>(
     kind: MoveKind,
     blend: f64,
     name: Option<&str>,
     class: T,
-) -> PyClassInitializer<T> {
+) -> PyResult<PyClassInitializer<T>> {
     let core = Move { kind, blend, name: name.map(str::to_owned) };
-    PyClassInitializer::from(PyMove { core }).add_subclass(class)
+    core.validate().map_err(raise)?;
+    Ok(PyClassInitializer::from(PyMove { core }).add_subclass(class))
 }
 
 /// All joints together to a configuration or a pose, as fast as the limits allow (PTP, movej).
@@ -92,7 +94,7 @@ fn made<T: pyo3::PyClass<BaseType = PyMove>>(
 ///     name: name in messages and reports.
 ///
 /// Raises:
-///     InvalidInputError: q_or_pose of another shape, or no rigid transform.
+///     InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero.
 #[pyclass(name = "Joints", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyJoints;
 
@@ -116,7 +118,7 @@ impl PyJoints {
                 )));
             }
         };
-        Ok(made(MoveKind::Joints(goal), blend, name, Self))
+        made(MoveKind::Joints(goal), blend, name, Self)
     }
 
     /// Joint positions at the end (n,), or the pose of the tip (4, 4).
@@ -147,7 +149,7 @@ impl PyJoints {
 ///     name: name in messages and reports.
 ///
 /// Raises:
-///     InvalidInputError: a pose of another shape, or no rigid transform.
+///     InvalidInputError: a pose of another shape, or no rigid transform; a speed that is not positive, or a blend below zero.
 #[pyclass(name = "Line", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyLine;
 
@@ -161,7 +163,7 @@ impl PyLine {
         blend: f64,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(made(MoveKind::Line { pose: rigid("pose", pose)?, speed }, blend, name, Self))
+        made(MoveKind::Line { pose: rigid("pose", pose)?, speed }, blend, name, Self)
     }
 
     /// Pose of the tip at the end (4, 4).
@@ -193,7 +195,8 @@ impl PyLine {
 ///     name: name in messages and reports.
 ///
 /// Raises:
-///     InvalidInputError: a point or a pose of another shape, or no rigid transform.
+///     InvalidInputError: a point or a pose of another shape, or no rigid transform; a speed or an angle that is not
+///         positive, or a blend below zero.
 #[pyclass(name = "Arc", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyArc;
 
@@ -213,7 +216,7 @@ impl PyArc {
             [4, 4] => rigid("via", via)?.translation.vector.into(),
             _ => point("via", via)?,
         };
-        Ok(made(MoveKind::Arc { via, pose: rigid("pose", pose)?, angle, speed }, blend, name, Self))
+        made(MoveKind::Arc { via, pose: rigid("pose", pose)?, angle, speed }, blend, name, Self)
     }
 
     /// Point that the arc passes through (3,) (m).
@@ -256,6 +259,9 @@ impl PyArc {
 /// Args:
 ///     seconds: how long (s), from 0 to 1e6.
 ///     name: name in messages and reports.
+///
+/// Raises:
+///     InvalidInputError: a time outside this range.
 #[pyclass(name = "Wait", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyWait;
 
@@ -266,7 +272,7 @@ impl PyWait {
     fn new(
         seconds: f64,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
-    ) -> PyClassInitializer<Self> {
+    ) -> PyResult<PyClassInitializer<Self>> {
         made(MoveKind::Wait(seconds), 0.0, name, Self)
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ikcore::Error;
 use ikcore::load::{CollisionShapes, Dh, DhTable, UrdfOptions};
 use ikcore::robot::{JointKind, Robot};
 use ikcore::units;
@@ -71,9 +72,9 @@ impl PyRobot {
         if Robot::names().any(|name| name == source) && !Path::new(&source).exists() {
             return Err(invalid(format!("there is no file '{source}'; Robot.named('{source}') is a built-in robot")));
         }
-        let mut directory = None;
+        let mut xacro = None;
         if is_xacro(&source) {
-            directory = Path::new(&source).parent().map(Path::to_path_buf);
+            xacro = Some(source.clone());
             source = python_calls::expand_xacro(py, &source, &package_dirs, trusted)?;
         }
         let options = UrdfOptions {
@@ -83,9 +84,11 @@ impl PyRobot {
             srdf: srdf.map(|srdf| path_or_text("srdf", srdf)).transpose()?,
             collision: read_collision(collision)?,
             package_dirs,
-            directory,
+            directory: xacro.as_deref().and_then(|file| Path::new(file).parent()).map(Path::to_path_buf),
         };
-        let (robot, doubts) = on_a_thread(py, move || Robot::read_urdf(&source, &options))?;
+        let expanded = xacro.map(|file| format!("{file}, expanded"));
+        let in_file = move |error: Error| expanded.iter().fold(error, |error, file| error.in_urdf_file(file));
+        let (robot, doubts) = on_a_thread(py, move || Robot::read_urdf(&source, &options).map_err(in_file))?;
         doubt(doubts)?;
         Ok(robot.into())
     }

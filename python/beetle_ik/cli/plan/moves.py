@@ -40,6 +40,7 @@ _KEYS: dict[str, tuple[set[str], set[str]]] = {
     "arc": ({"via", "to"}, {"speed", "blend", "angle", "name"}),
     "wait": ({"seconds"}, {"name"}),
 }
+_MOVES: dict[str, Callable[..., Move]] = {"joints": Joints, "line": Line, "arc": Arc, "wait": Wait}
 
 
 def moves(
@@ -128,13 +129,15 @@ def _move(where: str, given: Any) -> Move:
             raise InvalidInputError(f"{where}: 'name' must be a text, got {value!r}")
         if key in ("speed", "blend", "angle", "seconds"):
             _number(where, key, value)
-    made: dict[str, Callable[[], Move]] = {
-        "joints": lambda: Joints(_goal(where, rest.pop("to")), **rest),
-        "line": lambda: Line(_pose(where, rest.pop("to")), **rest),
-        "arc": lambda: Arc(_numbers(where, "via", rest.pop("via"), 3), _pose(where, rest.pop("to")), **rest),
-        "wait": lambda: Wait(rest.pop("seconds"), **rest),
-    }
-    return made[kind]()
+    if "via" in rest:
+        rest["via"] = _numbers(where, "via", rest["via"], 3)
+    if "to" in rest:
+        to = rest.pop("to")
+        rest |= {"q_or_pose": _goal(where, to)} if kind == "joints" else {"pose": _pose(where, to)}
+    try:
+        return _MOVES[kind](**rest)
+    except InvalidInputError as error:
+        raise type(error)(f"{where}: {error}") from error
 
 
 def _number(where: str, key: str, value: Any) -> None:

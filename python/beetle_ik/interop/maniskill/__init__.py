@@ -5,7 +5,9 @@
 
 Neither mplib nor SAPIEN need be installed; poses and shapes of both are taken.
 
-planner          the planner
+planner          the planner: calls for motions and configurations
+world_calls      its calls that change the world, or ask what touches what
+motions          its motions, clear of obstacles or along a screw
 articulation     its robot: joints in the order of a simulator
 world            what it keeps clear of
 configurations   configurations for a pose

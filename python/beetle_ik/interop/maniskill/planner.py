@@ -8,29 +8,15 @@ from typing import Any, Literal, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..._core import (
-    BeetleIkError,
-    ConvexMesh,
-    InvalidInputError,
-    Keep,
-    Limits,
-    Obstacle,
-    clearance,
-    nearest,
-    plan_point_to_point,
-    time_optimal,
-)
-from ...calls.text import counted
-from ...installed.needs import library
-from . import fcl
+from ..._core import InvalidInputError, Keep, Limits, Obstacle, time_optimal
 from .articulation import Articulation
 from .configurations import configurations
+from .motions import along_screw, planned
 from .poses import Array, matrix_of
-from .results import Result, sampled, standing
-from .screw import followed, screw
-from .world import World, WorldCollisionResult
+from .results import Result
+from .world import World
+from .world_calls import WorldCalls
 
-_FINER = 10
 _REFUSED = {
     "pinocchio_model": "use planner.robot.arm_at(qpos), whose fk and jacobian take the joints of the move group",
     "planner": "use plan_qpos or plan_pose",
@@ -38,7 +24,7 @@ _REFUSED = {
 }
 
 
-class Planner:
+class Planner(WorldCalls):
     """Plans motions of one robot among obstacles, with the calls and results of `mplib.Planner`.
 
     Args:
@@ -101,8 +87,8 @@ class Planner:
         self.move_group_link_id = self.link_name_2_idx.get(move_group, -1)
         self.move_group_joint_indices = self.robot.joints.at
         self.joint_limits = self.robot.joint_limits
-        self.joint_vel_limits = self._rates("joint_vel_limits", joint_vel_limits)
-        self.joint_acc_limits = self._rates("joint_acc_limits", joint_acc_limits)
+        self.joint_vel_limits = _rates("joint_vel_limits", joint_vel_limits, len(self.robot.joints.at))
+        self.joint_acc_limits = _rates("joint_acc_limits", joint_acc_limits, len(self.robot.joints.at))
         self.planning_world = World(self.robot, list(objects))
 
     def __getattr__(self, name: str) -> NoReturn:
@@ -170,11 +156,11 @@ class Planner:
                 if goals is None
                 else self._plan(qpos, {"end_q": self._arm(goals)}, time_step, around, use_attach, keep)
             )
-        planned = self._plan(qpos, {"end": target}, time_step, around, use_attach, keep)
-        if planned["status"] != "Success":
+        result = self._plan(qpos, {"end": target}, time_step, around, use_attach, keep)
+        if result["status"] != "Success":
             status, _ = self._goals(target, qpos, None, 20, 1e-3, around)
-            return planned if status == "Success" else {"status": status}
-        return planned
+            return result if status == "Success" else {"status": status}
+        return result
 
     def plan_qpos(
         self,
@@ -230,8 +216,8 @@ class Planner:
         goals = np.array([self.robot.full("goal_qposes", goal) for goal in several])
         fixed = [] if fixed_joint_indices is None else [int(i) for i in fixed_joint_indices]
         goals[:, fixed] = qpos[fixed]
-        end = {"end_q": self._arm(goals)}
-        return self._plan(qpos, end, time_step, self._around(use_point_cloud), use_attach, keep, fixed)
+        around = self._around(use_point_cloud)
+        return self._plan(qpos, {"end_q": self._arm(goals)}, time_step, around, use_attach, keep, fixed)
 
     plan_qpos_to_pose = plan_pose  # the names of mplib 0.1, which ManiSkill uses
     plan_qpos_to_qpos = plan_qpos
@@ -272,21 +258,8 @@ class Planner:
         del qpos_step, verbose
         qpos = self._start(current_qpos, True)
         robot, q = self.robot.arm_at(qpos, attached=use_attach), qpos[self.robot.joints.at]
-        goal = self._in_world(goal_pose, wrt_world)
-        rows = followed(robot, q, screw(robot.fk(q), goal))
-        if isinstance(rows, str):  # near a singular configuration the joints need more poses
-            rows = followed(robot, q, screw(robot.fk(q), goal, finer=_FINER))
-        if isinstance(rows, str):
-            return {"status": f"screw plan failed: {rows}"}
-        obstacles = self._around(use_point_cloud)
-        if obstacles is not None:
-            clear = clearance(robot, rows, obstacles)
-            if np.any(clear < 0.0):
-                found = nearest(robot, rows[np.argmax(clear < 0.0)], obstacles)
-                assert found is not None
-                told = self.planning_world.named(f"link '{found.body}' meets {found.other}")
-                return {"status": f"screw plan failed: {told}"}
-        return self._timed(rows, time_step)
+        goal, obstacles = self._in_world(goal_pose, wrt_world), self._around(use_point_cloud)
+        return along_screw(robot, q, goal, self._limits(), obstacles, time_step, self.planning_world.named)
 
     def IK(  # noqa: N802 -- the name of mplib
         self,
@@ -342,105 +315,20 @@ class Planner:
         motion = time_optimal(path, self._limits())
         return (*motion.sample(step), motion.duration)
 
-    def update_point_cloud(self, points: ArrayLike, resolution: float = 1e-3, name: str = "scene_pcd") -> None:
-        """Adds or replaces a point cloud (k, 3) (m) in the frame of the world, of cubes with edges `resolution` (m)."""
-        self.planning_world.add_point_cloud(name, points, resolution)
-
-    def remove_point_cloud(self, name: str = "scene_pcd") -> bool:
-        """Removes a point cloud; returns whether there was one."""
-        return self.planning_world.remove_object(name)
-
-    def remove_object(self, name: str) -> bool:
-        """Removes an object; returns whether there was one."""
-        return self.planning_world.remove_object(name)
-
-    def update_attached_object(
-        self, collision_geometry: Any, pose: Any, name: str = "attached_geom", art_name: Any = None, link_id: int = -1
-    ) -> None:
-        """Has a link carry a convex shape, at `pose` in the frame of the link; it may touch what it touches now.
-
-        Raises:
-            InvalidInputError: a shape that is not known or not convex, or no pose.
-        """
-        del art_name
-        self.planning_world.attach(name, collision_geometry, self.robot.link(link_id), matrix_of("pose", pose))
-
-    def update_attached_box(self, size: ArrayLike, pose: Any, art_name: Any = None, link_id: int = -1) -> None:
-        """Has a link carry a box with edges (3,) (m), about `pose` in the frame of the link."""
-        self.update_attached_object(fcl.Box(size), pose, self._carried("box", art_name, link_id), None, link_id)
-
-    def update_attached_sphere(self, radius: float, pose: Any, art_name: Any = None, link_id: int = -1) -> None:
-        """Has a link carry a ball (m), about `pose` in the frame of the link."""
-        self.update_attached_object(fcl.Sphere(radius), pose, self._carried("sphere", art_name, link_id), None, link_id)
-
-    def update_attached_mesh(self, mesh_path: str, pose: Any, art_name: Any = None, link_id: int = -1) -> None:
-        """Has a link carry the convex hull of a mesh file, at `pose` in the frame of the link.
-
-        Raises:
-            BeetleIkError: trimesh is not installed.
-        """
-        trimesh = library("trimesh", "trimesh", "a mesh from a file", extra="surfaces")
-        hull = ConvexMesh(trimesh.load_mesh(mesh_path).vertices)
-        self.update_attached_object(hull, pose, self._carried("mesh", art_name, link_id), None, link_id)
-
-    def detach_object(self, name: str = "attached_geom", also_remove: bool = False) -> bool:
-        """Lets go of a carried object, which stays as an obstacle unless it is removed.
-
-        Returns:
-            Whether it was carried.
-        """
-        return self.planning_world.detach_object(name, also_remove)
-
-    def set_base_pose(self, pose: Any) -> None:
-        """Places the base of the robot in the world."""
-        self.robot.set_base_pose(pose)
-
-    def check_for_self_collision(self, state: ArrayLike | None = None) -> list[WorldCollisionResult]:
-        """Returns the pairs of links that overlap, at joint positions or in the present state."""
-        return self.planning_world.self_collisions(self._state(state))
-
-    def check_for_env_collision(self, state: ArrayLike | None = None) -> list[WorldCollisionResult]:
-        """Returns the links that overlap with objects, at joint positions or in the present state."""
-        return self.planning_world.world_collisions(self._state(state))
-
-    def pad_move_group_qpos(self, qpos: ArrayLike, articulation: Any = None) -> Array:
-        """Returns all joint positions; of the move group alone, the others stay as they are."""
-        del articulation
-        return self.robot.full("qpos", qpos)
-
     def _plan(
         self,
         qpos: Array,
-        end: dict[str, Any],
+        end: dict[str, Array],
         time_step: float,
         obstacles: list[Obstacle] | None,
         attached: bool,
         keep: Any,
         fixed: Sequence[int] = (),
     ) -> Result:
-        """Plans to the ends, and returns the result as mplib does."""
+        """Plans to a pose, "end", or to the nearest of configurations of the move group, "end_q"."""
         robot, q = self.robot.arm_at(qpos, attached=attached), qpos[self.robot.joints.at]
-        goals = end.get("end_q")
-        if goals is not None and (nearby := np.abs(goals - q).max(axis=1) < 1e-9).any():
-            return standing(goals[np.argmax(nearby)])
-        try:
-            plan = plan_point_to_point(
-                robot,
-                start_q=q,
-                limits=self._limits(q, fixed),
-                obstacles=obstacles,
-                margin=0.0,
-                free_start=obstacles is not None,
-                keep=keep,
-                **end,
-            )
-        except InvalidInputError as error:
-            if goals is None and np.allclose(robot.fk(q), end["end"], rtol=0.0, atol=1e-9):
-                return standing(q)
-            return {"status": f"RRTConnect Failed. {self.planning_world.named(str(error))}"}
-        if not plan.success:
-            return {"status": f"RRTConnect Failed. {self.planning_world.named(plan.message)}"}
-        return {**sampled(plan.trajectory, time_step), "plan": plan}
+        limits, named = self._limits(q, fixed), self.planning_world.named
+        return planned(robot, q, end, limits, obstacles, keep, time_step, named)
 
     def _goals(
         self,
@@ -467,14 +355,6 @@ class Planner:
             return f"IK Failed! {self.planning_world.named(message)}", None
         return "Success", [self._with_arm(qpos, one) for one in found]
 
-    def _timed(self, rows: Array, time_step: float) -> Result:
-        if np.abs(rows - rows[0]).max() < 1e-12:
-            return standing(rows[0])
-        try:
-            return sampled(time_optimal(rows, self._limits()), time_step)
-        except BeetleIkError as error:
-            return {"status": f"screw plan failed: {error}"}
-
     def _limits(self, q: Array | None = None, fixed: Sequence[int] = ()) -> Limits:
         lower = upper = None
         if q is not None and len(fixed):
@@ -482,41 +362,13 @@ class Planner:
             lower, upper = (np.where(held, q, bound) for bound in self.joint_limits[self.robot.joints.at].T)
         return Limits(lower=lower, upper=upper, velocity=self.joint_vel_limits, acceleration=self.joint_acc_limits)
 
-    def _rates(self, name: str, values: ArrayLike | None) -> Array:
-        count = len(self.robot.joints.at)
-        rates = np.ones(count) if values is None or np.size(values) == 0 else np.array(values, dtype=float)
-        if rates.shape != (count,):
-            raise InvalidInputError(
-                f"{name}: expected {count}, one per joint of the move group, got shape {rates.shape}"
-            )
-        return rates
-
     def _start(self, qpos: ArrayLike, clip: bool) -> Array:
         full = self.robot.full("current_qpos", qpos)
         return np.clip(full, *self.joint_limits.T) if clip else full
 
-    def _state(self, state: ArrayLike | None) -> Array:
-        return self.robot.get_qpos() if state is None else self.robot.full("state", state)
-
     def _in_world(self, pose: Any, wrt_world: bool) -> Array:
         matrix = matrix_of("goal_pose", pose)
         return matrix if wrt_world else self.robot.get_base_pose().to_transformation_matrix() @ matrix
-
-    def _around(self, used: bool) -> list[Obstacle] | None:
-        """Returns the obstacles; None for a robot without bodies, which can touch nothing.
-
-        Raises:
-            InvalidInputError: obstacles, and a robot without bodies.
-        """
-        obstacles = self.planning_world.obstacles if used else []
-        if self.robot.has_bodies:
-            return obstacles
-        if obstacles:
-            raise InvalidInputError(
-                f"the robot '{self.robot.get_name()}' has no collision shapes, so it cannot keep clear of "
-                f'{counted(len(obstacles), "obstacle")}: give a URDF with shapes and collision="hulls"'
-            )
-        return None
 
     def _arm(self, goals: Any) -> Array:
         return np.array(goals)[:, self.robot.joints.at]
@@ -525,10 +377,6 @@ class Planner:
         full = qpos.copy()
         full[self.robot.joints.at] = q
         return full
-
-    def _carried(self, kind: str, art_name: Any, link_id: int) -> str:
-        number = self.move_group_link_id if link_id == -1 else link_id
-        return f"{art_name or self.robot.get_name()}_{number}_{kind}"
 
     @staticmethod
     def _refuse_constraint(*functions: Any) -> None:
@@ -546,3 +394,10 @@ def _beside(urdf: str | os.PathLike[str]) -> Path | None:
     file = Path(urdf)
     found = (file.with_suffix(".srdf"), file.with_name(f"{file.stem}_mplib.srdf"))
     return next((one for one in found if one.is_file()), None)
+
+
+def _rates(name: str, values: ArrayLike | None, count: int) -> Array:
+    rates = np.ones(count) if values is None or np.size(values) == 0 else np.array(values, dtype=float)
+    if rates.shape != (count,):
+        raise InvalidInputError(f"{name}: expected {count}, one per joint of the move group, got shape {rates.shape}")
+    return rates

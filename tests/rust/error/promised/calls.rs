@@ -65,6 +65,8 @@ pub fn calls() -> Vec<Row> {
         "plan_batch" OutOfRange: plans(&[0.0; 2], 0), "threads must be from 1 to 1024, got 0";
         "plan_point_to_point" Unreachable: between(&[far()], &[0.0; 2]), "end cannot be reached: the nearest configuration found stays 7.000 m away";
         "plan_point_to_point" NoUsableEnd: between(&[far(), far()], &[0.0; 2]), "none of the 2 ends can be reached: end[0]: the nearest configuration found stays 7.000 m away; end[1]: the nearest configuration found stays 7.000 m away";
+        "Move::validate" OutOfRange: Move::new(MoveKind::Wait(-1.0)).validate(), "time must be from 0 to 1000000 s, got -1";
+        "Move::validate" NotFinite: Move { name: Some("by".into()), ..Move::new(MoveKind::Arc { via: [NAN; 3], pose: Pose::identity(), angle: None, speed: None }) }.validate(), "via of move 'by' must be finite, but entry 0 is NaN";
         "plan_moves" InvalidMove: program([0.0; 3]), "the program: it has no moves: give at least one";
         "plan_moves" Unreachable: program([-0.9, 0.0, 0.0]), "move 0 'out' cannot be reached: 0.3521 m along it, no solution (no configuration has this pose): move or turn the target into reach, or move the base";
         "plan_moves" NotFound: program([0.3, 0.0, 0.0]), "a motion along move 0 'out' was not found: 0.07500 m along it, joint 'elbow_joint' would have to go to 2.326, beyond its limits [-6.283, 1.900]; begin with a joint move to a pose, so that the planner can choose the configuration";

@@ -12,6 +12,7 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Robot::planar" WrongLength: Robot::planar(&[]), "lengths of a planar arm: expected at least 1, got 0";
         "Robot::from_urdf" Unreadable: Robot::from_urdf("none.urdf", None, None), "cannot read 'none.urdf': No such file or directory (os error 2)";
         "Robot::from_urdf" Urdf: Robot::from_urdf("<robot", None, None), "URDF line 1: not XML: the document does not have a root node";
+        "Robot::from_urdf" InFile: Robot::from_urdf("Cargo.toml", None, None), "Cargo.toml: URDF line 1: not XML: unknown token at 1:1";
         "Robot::from_urdf" UnknownLink: Robot::from_urdf(&two_arms(), None, Some("left_tol")), "robot 'pair' has no link 'left_tol' (did you mean 'left_tool'?); its links: floor, chest, camera, left_0, left_1, left_2, left_3, left_4, left_5, left_6, left_tool, left_badge, right_0, right_1, right_2, right_3, right_4, right_5, right_6, right_tool, right_badge";
         "Robot::from_urdf" AmbiguousTip: Robot::from_urdf(&two_arms(), None, None), "robot 'pair' ends in 5 links: say which one is the tip; leaves, by number of joints: left_tool (8), left_badge (8), right_tool (8), right_badge (8), camera (1)";
         "Robot::with_srdf" Unreadable: panda.with_srdf("none.srdf"), "cannot read 'none.srdf': No such file or directory (os error 2)";

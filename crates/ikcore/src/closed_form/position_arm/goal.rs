@@ -33,15 +33,16 @@ pub struct PositionGoal<'a> {
 /// Trace of the rotation between the tip and the goal: a constant, and the parts along cosine and sine of the last turn.
 #[derive(Debug, Clone, Copy)]
 pub struct Trace {
-    constant: f64,
-    cosine: f64,
-    sine: f64,
+    pub constant: f64,
+    pub cosine: f64,
+    pub sine: f64,
 }
 
 /// Angles modulo 2 pi between two limits.
 #[derive(Debug, Clone, Copy)]
 pub struct TurnRange {
-    ends: [Angle; 2],
+    /// Limits; of a whole turn, no rotation.
+    pub ends: [Angle; 2],
     middle: Angle,
     /// Least cosine of the angle to the middle.
     least: f64,
@@ -86,6 +87,14 @@ impl Trace {
 }
 
 impl TurnRange {
+    /// Least cosine of a whole turn, which no cosine is below.
+    const WHOLE: f64 = -2.0;
+
+    /// Whether some turns are outside.
+    pub fn is_limited(&self) -> bool {
+        self.least > Self::WHOLE
+    }
+
     /// Range between these limits (rad).
     pub fn of([lower, upper]: [f64; 2]) -> Self {
         let half = 0.5 * (upper - lower);
@@ -93,7 +102,7 @@ impl TurnRange {
             let least = half.cos() - ROUNDING;
             Self { ends: [Angle::by(lower), Angle::by(upper)], middle: Angle::by(lower + half), least }
         } else {
-            Self { ends: [Angle::NONE; 2], middle: Angle::NONE, least: -2.0 }
+            Self { ends: [Angle::NONE; 2], middle: Angle::NONE, least: Self::WHOLE }
         }
     }
 

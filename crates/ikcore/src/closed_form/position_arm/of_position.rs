@@ -1,5 +1,6 @@
 //! Arm of three to five revolute joints whose first three carry the tip to a position.
 
+use super::plane_joints::PlaneJoints;
 use super::scan::MOST;
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::AngleRange;
@@ -25,6 +26,8 @@ pub(crate) struct PositionArm {
     pub(super) basis: [Vector; 3],
     /// The first three joints at the limits of the arm.
     pub(super) at_limits: Vec<AtLimit>,
+    /// The second to fourth joint, if their axes are parallel.
+    pub(super) plane: Option<PlaneJoints>,
 }
 
 /// One of the first three joints at a limit (rad).
@@ -65,7 +68,8 @@ impl PositionArm {
         let three = ThreeAxes::new(&[all[0], all[1], all[2]], pair(0), pair(1), size);
         let basis = across(&all[joints - 1].axis);
         let limits = drives.of_axes(lower, upper);
-        let mut arm = Self { joints: all, count: joints, tip, three, drives, size, basis, at_limits: vec![] };
+        let plane = PlaneJoints::new(&all, joints, size);
+        let mut arm = Self { joints: all, count: joints, tip, three, drives, size, basis, at_limits: vec![], plane };
         arm.prepare(&limits);
         arm.finds_samples().then_some(arm)
     }

@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use super::goal::{PositionGoal, TurnRange};
 use super::of_position::PositionArm;
+use super::plane_joints::{PLANE_BRANCHES, PlaneJoints};
 use super::scan::{MOST, Minima, SEEDS, Scan, ScanMinimum, ScanSample, likeness};
 use super::solutions::ScanFrom;
 use crate::closed_form::angle::Angle;
@@ -21,6 +22,11 @@ const SPACING: f64 = 0.15;
 
 /// Largest number of values of the scan.
 const VALUES: usize = 64;
+
+/// Distance (rad) between two turns of the fifth joint where it is scanned, and what the least of them may gain between two, as a
+/// fraction of the rise to the next.
+const TURN_SPACING: f64 = 0.25;
+const GAIN: f64 = 0.25;
 
 /// Turns of the fifth joint that the scan begins with, where the tip is far off its axis.
 const TURNS: usize = 4;
@@ -67,6 +73,9 @@ pub(crate) struct Seed {
     pub least: f64,
 }
 
+/// Optima with the value that a descent may gain beyond each, the least first.
+type Optima = SmallVec<[(f64, ScanSample); SEEDS]>;
+
 /// Place of the tip, seen from the axis of the fifth joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum TipPlace {
@@ -107,30 +116,97 @@ impl PositionArm {
             inside: std::array::from_fn(|j| TurnRange::of(limits[j])),
             last: TurnRange::of(limits[MOST - 1]),
         };
-        let values = self.scanned(&goal);
+        if !self.write_optima(&goal, place, found) {
+            self.write_scanned(&goal, place, found);
+        }
+        found.sort_by(|a, b| a.value.total_cmp(&b.value));
+        for seed in found {
+            self.drives.joints_of(&mut seed.q);
+        }
+    }
+
+    /// Writes the seeds of an arm with parallel axes in the middle; returns whether there are any.
+    fn write_optima(&self, goal: &PositionGoal<'_>, place: TipPlace, found: &mut SmallVec<[Seed; SEEDS]>) -> bool {
+        let Some(plane) = &self.plane else { return false };
+        match place {
+            TipPlace::OnAxis => self.write_plane_optima(plane, goal, found),
+            TipPlace::Near(_) | TipPlace::Off => self.write_turn_scan(plane, goal, found),
+        }
+        !found.is_empty()
+    }
+
+    /// Writes the optima of a tip on the last axis.
+    fn write_plane_optima(&self, plane: &PlaneJoints, goal: &PositionGoal<'_>, found: &mut SmallVec<[Seed; SEEDS]>) {
+        let mut optima = Optima::new();
+        plane.visit_optima(goal, |sample| insert_least(&mut optima, (0.0, sample)));
+        self.write_seeds(goal, &optima, found);
+    }
+
+    /// Writes the least values of a scan of the fifth joint, along each branch of the others.
+    fn write_turn_scan(&self, plane: &PlaneJoints, goal: &PositionGoal<'_>, found: &mut SmallVec<[Seed; SEEDS]>) {
+        let turns = spread(goal.limits[MOST - 1], TURN_SPACING, VALUES);
+        let mut rows: SmallVec<[[ScanSample; PLANE_BRANCHES]; 32]> = SmallVec::new();
+        let mut least = f64::INFINITY;
+        for turn in turns {
+            let mut row = [ScanSample::NONE; PLANE_BRANCHES];
+            plane.visit_best(goal, Angle::by(turn), least + LEAST_RESERVE, |branch, sample| {
+                if sample.value < row[branch].value {
+                    row[branch] = sample;
+                }
+                least = least.min(sample.value);
+            });
+            rows.push(row);
+        }
+        let mut optima = Optima::new();
+        for branch in 0..PLANE_BRANCHES {
+            let value = |k: usize| rows.get(k).map_or(f64::INFINITY, |row| row[branch].value);
+            for (k, row) in rows.iter().enumerate() {
+                let here = value(k);
+                let beside = [value(k.wrapping_sub(1)), value(k + 1)];
+                if here < beside[0] && here <= beside[1] {
+                    let rise = beside
+                        .iter()
+                        .filter(|value| value.is_finite())
+                        .fold(0.0, |most: f64, value| most.max(value - here));
+                    insert_least(&mut optima, (LEAST_RESERVE + GAIN * rise, row[branch]));
+                }
+            }
+        }
+        self.write_seeds(goal, &optima, found);
+    }
+
+    /// Writes seeds at optima, in order of their values.
+    fn write_seeds(&self, goal: &PositionGoal<'_>, optima: &Optima, found: &mut SmallVec<[Seed; SEEDS]>) {
+        for (gain, sample) in optima {
+            let Some(seed) = self.inside(goal, sample, sample.value - gain) else { continue };
+            if !found.iter().any(|other| self.are_same(&seed, other)) {
+                found.push(seed);
+            }
+        }
+    }
+
+    /// Writes the seeds of a scan of the fourth joint.
+    fn write_scanned(&self, goal: &PositionGoal<'_>, place: TipPlace, found: &mut SmallVec<[Seed; SEEDS]>) {
+        let values = self.scanned(goal);
         let mut minima = match place {
-            TipPlace::OnAxis => self.minima(&goal, &values, &[ScanFrom::OnAxis]),
-            TipPlace::Near(on_axis) => self.minima(&goal, &values, &[ScanFrom::Near(&goal.seen_from(on_axis))]),
+            TipPlace::OnAxis => self.minima(goal, &values, &[ScanFrom::OnAxis]),
+            TipPlace::Near(on_axis) => self.minima(goal, &values, &[ScanFrom::Near(&goal.seen_from(on_axis))]),
             TipPlace::Off => Minima::new(),
         };
         if minima.is_empty() && place != TipPlace::OnAxis {
             let turns = spread(goal.limits[MOST - 1], 0.0, TURNS).into_iter();
             let firsts: SmallVec<[ScanFrom<'_>; TURNS]> = turns.map(|turn| ScanFrom::Turn(Angle::by(turn))).collect();
-            minima = self.minima(&goal, &values, &firsts);
+            minima = self.minima(goal, &values, &firsts);
         }
         let least = minima.first().map_or(0.0, |minimum| minimum.sample.value);
         let worse = WORSE[usize::from(place != TipPlace::OnAxis)];
         let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
         let may_win = |minimum: &&ScanMinimum| minimum.sample.value - gain_beside(minimum, spacing) <= least + worse;
         for minimum in minima.iter().filter(may_win) {
-            let Some(seed) = self.seed(&goal, minimum, spacing, place) else { continue };
+            let Some(seed) = self.seed(goal, minimum, spacing, place) else { continue };
             if !found.iter().any(|other| self.are_same(&seed, other)) {
                 found.push(seed);
             }
-        }
-        found.sort_by(|a, b| a.value.total_cmp(&b.value));
-        for seed in found {
-            self.drives.joints_of(&mut seed.q);
         }
     }
 
@@ -180,6 +256,11 @@ impl PositionArm {
     /// Seed at a minimum of the scan, inside the limits; `None` too far outside them.
     fn seed(&self, goal: &PositionGoal<'_>, minimum: &ScanMinimum, spacing: f64, place: TipPlace) -> Option<Seed> {
         let (sample, least) = self.refined(goal, minimum, spacing, place);
+        self.inside(goal, &sample, least)
+    }
+
+    /// Seed at a sample, inside the limits; `None` too far outside them.
+    fn inside(&self, goal: &PositionGoal<'_>, sample: &ScanSample, least: f64) -> Option<Seed> {
         let mut q = [0.0; MOST_JOINTS];
         for j in 0..self.count {
             let (inside, excess) = placed(sample.turns[j].angle(), goal.limits[j]);
@@ -256,6 +337,15 @@ fn gain_beside(minimum: &ScanMinimum, spacing: f64) -> f64 {
     }
 }
 
+/// Inserts an optimum in order; the worst is lost where there is no room.
+fn insert_least(optima: &mut Optima, new: (f64, ScanSample)) {
+    let place = optima.partition_point(|(_, other)| other.value <= new.1.value);
+    if place < SEEDS {
+        optima.truncate(SEEDS - 1);
+        optima.insert(place, new);
+    }
+}
+
 /// Returns values between these limits, or over a turn, no farther apart than `spacing`, at most `most`; `most` of them if
 /// `spacing` is zero.
 fn spread([lower, upper]: [f64; 2], spacing: f64, most: usize) -> Values {
@@ -302,22 +392,51 @@ mod tests {
         let drives = Drives::new((0..joints.len()).map(|joint| (joint, 1.0)));
         let tip = Frame { origin: tip, ..Frame::IDENTITY };
         let basis = across(&all[joints.len() - 1].axis);
-        PositionArm { joints: all, count: joints.len(), tip, three, drives, size, basis, at_limits: vec![] }
+        let plane = PlaneJoints::new(&all, joints.len(), size);
+        let count = joints.len();
+        PositionArm { joints: all, count, tip, three, drives, size, basis, at_limits: vec![], plane }
+    }
+
+    /// Axes and points on them, in a plane but for the last.
+    const FIVE: [([f64; 3], [f64; 3]); 5] = [
+        ([0.0, 0.0, 1.0], [0.0; 3]),
+        ([0.0, 1.0, 0.0], [0.03, 0.0, 0.1]),
+        ([0.0, 1.0, 0.0], [0.06, 0.0, 0.22]),
+        ([0.0, -1.0, 0.0], [0.19, 0.0, 0.22]),
+        ([1.0, 0.0, 0.0], [0.25, 0.0, 0.22]),
+    ];
+    const TIP: [f64; 3] = [0.35, 0.0, 0.22];
+
+    #[test]
+    fn optima_of_parallel_axes_are_no_worse_than_a_scan() {
+        let mut rng = rng::stream(4, 0);
+        for count in [4, 5] {
+            let arm = arm(&FIVE[..count], TIP);
+            let scanned = PositionArm { plane: None, ..arm.clone() };
+            let limits = [[-1.2; 5], [1.6; 5]];
+            let mut seeds = SmallVec::new();
+            for _ in 0..300 {
+                let q: [f64; 5] = std::array::from_fn(|_| rng.uniform_in(-1.2, 1.6));
+                let motion =
+                    (0..count).fold(Frame::IDENTITY, |at, j| at.then::<Baseline>(&arm.joints[j].displacement(q[j])));
+                let (axis, turn) = (arm.basis[count % 3], Angle::by(rng.uniform_in(-0.8, 0.8)));
+                let tip = motion.then::<Baseline>(&arm.tip);
+                let target = Frame { axes: tip.axes.map(|vector| turn.about(&axis, &vector)), ..tip };
+                let mut least = |arm: &PositionArm| {
+                    arm.seeds(&target, &Frame::IDENTITY, [&limits[0][..count], &limits[1][..count]], &mut seeds);
+                    seeds.first().map_or(f64::INFINITY, |seed| seed.value)
+                };
+                let [optimum, scan] = [least(&arm), least(&scanned)];
+                assert!(optimum <= scan + 1e-5, "{count} joints at {q:?}: {optimum} {scan}");
+            }
+        }
     }
 
     #[test]
     fn seeds_are_at_the_place_and_near_the_turn_of_a_pose_of_the_arm() {
-        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        let five = [
-            (z, [0.0; 3]),
-            (y, [0.03, 0.0, 0.1]),
-            (y, [0.06, 0.0, 0.22]),
-            (y, [0.19, 0.0, 0.22]),
-            (x, [0.25, 0.0, 0.22]),
-        ];
         let mut rng = rng::stream(3, 0);
         for count in 3..=5 {
-            let arm = arm(&five[..count], [0.35, 0.0, 0.22]);
+            let arm = arm(&FIVE[..count], TIP);
             assert!(arm.finds_samples());
             let limits = [[-2.0; 5], [2.0; 5]];
             for _ in 0..200 {

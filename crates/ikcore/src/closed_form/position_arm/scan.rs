@@ -73,7 +73,8 @@ pub struct Scan {
 }
 
 impl ScanSample {
-    const NONE: Self = Self { value: f64::INFINITY, turns: [Angle::NONE; MOST] };
+    /// No sample.
+    pub const NONE: Self = Self { value: f64::INFINITY, turns: [Angle::NONE; MOST] };
 }
 
 impl Scan {

@@ -59,8 +59,8 @@ impl Robot {
     /// [`Robot::unread_collision_shapes`] lists the rest.
     ///
     /// # Errors
-    /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF;
-    /// [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; the errors of
+    /// [`Error::Unreadable`] for a file; [`Error::Urdf`], with the line where there is one, for text that is no URDF, which an
+    /// [`Error::InFile`] holds if it is that of a file; [`Error::UnknownLink`] and [`Error::AmbiguousTip`] for base and tip; the errors of
     /// [`ChainBuilder::build`](crate::robot::ChainBuilder::build) for impossible limits.
     pub fn from_urdf(path_or_xml: &str, base: Option<&str>, tip: Option<&str>) -> Result<Self> {
         let tips = tip.into_iter().map(str::to_owned).collect();
@@ -83,44 +83,61 @@ impl Robot {
     /// # Errors
     /// Errors of [`from_urdf_with`](Self::from_urdf_with).
     pub fn read_urdf(path_or_xml: &str, options: &UrdfOptions) -> Result<(Self, Vec<UnitDoubt>)> {
-        let document = Document::parse(&text_of(path_or_xml, read_urdf)?)?;
-        let tree = Tree::new(&document)?;
-        let base = match &options.base {
-            Some(name) => tree.link(name)?,
-            None => tree.root(),
-        };
-        let tips = match &options.tips[..] {
-            [] => vec![tree.only_leaf_below(base)?],
-            names => names.iter().map(|name| tree.link(name)).collect::<Result<_>>()?,
-        };
-        let robot = chain::build(&document, &tree, base, &tips)?;
-        let folder = Path::new(path_or_xml).parent().filter(|_| !path_or_xml.contains('<'));
-        let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
-        let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
-        let visuals = visuals::of(&document.visuals, &robot, &packages);
-        let robot = robot.with_visuals(visuals);
-        let robot = match &options.hold[..] {
-            [] => robot,
-            hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
-        };
+        let text = text_of(path_or_xml, read_urdf)?;
+        let (robot, doubts) = described(&text, path_or_xml, options).map_err(|error| in_file(path_or_xml, error))?;
         let robot = match &options.srdf {
             None => robot,
             Some(srdf) => robot.with_srdf(srdf)?,
         };
-        let doubts = units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)).chain(document.doubt());
-        let doubts = doubts.collect();
         Ok((robot, doubts))
     }
 }
 
+/// The robot of a text, without SRDF; `path_or_xml` says which folder meshes are beside.
+fn described(text: &str, path_or_xml: &str, options: &UrdfOptions) -> Result<(Robot, Vec<UnitDoubt>)> {
+    let document = Document::parse(text)?;
+    let tree = Tree::new(&document)?;
+    let base = match &options.base {
+        Some(name) => tree.link(name)?,
+        None => tree.root(),
+    };
+    let tips = match &options.tips[..] {
+        [] => vec![tree.only_leaf_below(base)?],
+        names => names.iter().map(|name| tree.link(name)).collect::<Result<_>>()?,
+    };
+    let robot = chain::build(&document, &tree, base, &tips)?;
+    let folder = Path::new(path_or_xml).parent().filter(|_| !is_text(path_or_xml));
+    let packages = Packages::new(&options.package_dirs, options.directory.as_deref().or(folder));
+    let robot = robot.with_bodies(bodies::of(&document, &robot, options.collision, &packages)?);
+    let visuals = visuals::of(&document.visuals, &robot, &packages);
+    let robot = robot.with_visuals(visuals);
+    let robot = match &options.hold[..] {
+        [] => robot,
+        hold => robot.with_held(hold.iter().map(|(joint, value)| (joint.as_str(), *value)))?,
+    };
+    let doubts = units::of_limits(&robot).into_iter().chain(units::of_sizes(&robot)).chain(document.doubt());
+    let doubts = doubts.collect();
+    Ok((robot, doubts))
+}
+
+/// Whether this is the text of a file rather than its path.
+pub(super) fn is_text(path_or_xml: &str) -> bool {
+    path_or_xml.contains('<')
+}
+
 /// Returns the text itself if it contains `<`, otherwise the content of the file.
 pub(super) fn text_of(path_or_xml: &str, read: impl Fn(&str) -> Result<String>) -> Result<Cow<'_, str>> {
-    if path_or_xml.contains('<') { Ok(Cow::Borrowed(path_or_xml)) } else { read(path_or_xml).map(Cow::Owned) }
+    if is_text(path_or_xml) { Ok(Cow::Borrowed(path_or_xml)) } else { read(path_or_xml).map(Cow::Owned) }
+}
+
+/// Names the file of a URDF that was given by its path.
+pub(super) fn in_file(path_or_xml: &str, error: Error) -> Error {
+    if is_text(path_or_xml) { error } else { error.in_urdf_file(path_or_xml) }
 }
 
 pub(super) fn read(path: &str) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|error| Error::unreadable(path, error))?;
-    String::from_utf8(bytes).map_err(|error| not_utf8(&error))
+    String::from_utf8(bytes).map_err(|error| not_utf8(&error).in_urdf_file(path))
 }
 
 pub(super) fn read_urdf(path: &str) -> Result<String> {

@@ -6,7 +6,7 @@ use roxmltree::Node;
 
 use super::chain;
 use super::document::Document;
-use super::read::{read_urdf, text_of};
+use super::read::{in_file, read_urdf, text_of};
 use super::tree::{Tree, TreeStep};
 use super::xml;
 use crate::error::{Error, Result};
@@ -26,7 +26,11 @@ impl Robot {
     pub fn urdf_with_geometry(&self, path_or_xml: &str) -> Result<String> {
         self.require_one_tip("writing a URDF")?;
         let text = text_of(path_or_xml, read_urdf)?;
-        let document = Document::parse(&text)?;
+        self.rewritten(&text).map_err(|error| in_file(path_or_xml, error))
+    }
+
+    fn rewritten(&self, text: &str) -> Result<String> {
+        let document = Document::parse(text)?;
         let tree = Tree::new(&document)?;
         let names: Vec<&str> = self.link_names().collect();
         let [base, .., tip] = names[..] else { return Err(another(self)) };
@@ -38,7 +42,7 @@ impl Robot {
         let changed =
             |(step, origin): (&TreeStep, Option<Pose>)| Some((document.joints[step.joint].name.as_str(), origin?));
         let changed: Vec<(&str, Pose)> = path.iter().zip(origins).filter_map(changed).collect();
-        with_origins(&text, &changed)
+        with_origins(text, &changed)
     }
 }
 

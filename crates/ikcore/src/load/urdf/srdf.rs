@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use roxmltree::Node;
 
-use super::read::{read, text_of};
+use super::read::{is_text, read, text_of};
 use super::xml;
 use crate::error::{Error, Result, suggestion};
 use crate::robot::{Robot, Stance};
@@ -21,15 +21,26 @@ impl Robot {
     /// # Errors
     /// [`Error::Unreadable`]; [`Error::Srdf`] for text that is no SRDF, or an SRDF of another robot.
     pub fn with_srdf(&self, path_or_xml: &str) -> Result<Self> {
-        let text = text_of(path_or_xml, read)?;
-        let described = Srdf::parse(&text).map_err(|error| match error {
-            Error::Urdf { line, problem } => Error::Srdf { line, problem },
-            other => other,
-        })?;
-        described.require_same_robot(self)?;
+        let described = Srdf::read(path_or_xml, self).map_err(|error| of_srdf(path_or_xml, error))?;
         let robot = self.with_stances(described.stances(self));
         let disabled = described.disabled_pairs(self);
         Ok(if disabled.is_empty() { robot } else { robot.with_disabled_pairs(disabled) })
+    }
+}
+
+/// The same error, of an SRDF, with its file.
+fn of_srdf(path_or_xml: &str, error: Error) -> Error {
+    match error {
+        Error::Urdf { line, problem } | Error::Srdf { line, problem } => {
+            let error = Error::Srdf { line, problem };
+            if is_text(path_or_xml) {
+                error
+            } else {
+                Error::InFile { path: path_or_xml.into(), error: Box::new(error) }
+            }
+        }
+        Error::InFile { error, .. } => of_srdf(path_or_xml, *error),
+        other => other,
     }
 }
 
@@ -45,6 +56,12 @@ struct Srdf {
 }
 
 impl Srdf {
+    fn read(path_or_xml: &str, robot: &Robot) -> Result<Self> {
+        let described = Self::parse(&text_of(path_or_xml, read)?)?;
+        described.require_same_robot(robot)?;
+        Ok(described)
+    }
+
     fn parse(text: &str) -> Result<Self> {
         let text = xml::without_declaration(text);
         let parsed = roxmltree::Document::parse(&text).map_err(|error| xml::not_xml(&error))?;

@@ -3,7 +3,7 @@
 //! Each step needs a positive definite matrix with a few diagonals. The limit of the jerk is a linear form below the convex 1 / sqrt(y);
 //! the part of the second derivative that its curvature would take away is left out. All iterates keep all limits.
 
-use super::constraints::{Constraints, PointRows, RatePoint, TipRow};
+use super::constraints::{Constraints, JointRow, PointRows, RatePoint, TipRow};
 use super::rate_spline::RateSpline;
 use crate::error::Result;
 use crate::interrupt::checkpoint;
@@ -11,17 +11,20 @@ use crate::math::banded::{self, Band, SIDE_DIAGONALS};
 
 /// Barriers: the gap that they leave to the fastest motion, as a fraction of its duration.
 const GAPS: [f64; 5] = [0.5, 0.1, 1.5e-2, 1e-3, 2e-5];
-/// Those of a search that begins near the fastest rate.
-const LATER_GAPS: [f64; 3] = [1.5e-2, 1e-3, 2e-5];
+/// Those of a search that begins near the fastest rate. Smaller ones gain nothing: a rate that touches its limits at the points exceeds them
+/// by more between them, and the motion is slowed by as much.
+const LATER_GAPS: [f64; 2] = [1.5e-2, 1e-3];
 /// Factor by which such a start is slowed down until it keeps the constraints, and how often at most.
 const SLOWED: f64 = 0.97;
 const SLOWINGS: i32 = 30;
 /// Newton steps for each barrier at most.
 const STEPS: usize = 100;
 /// A step that would lower the function by less than this fraction of the gap ends the search.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 0.1;
 /// Part of the decrease that a step promises that it must bring.
 const SUFFICIENT: f64 = 0.1;
+/// Part of the room of a limit that a step may take.
+const MOST_OF_ROOM: f64 = 0.95;
 /// Shortest part of a step.
 const SHORTEST: f64 = 1e-6;
 /// Part of the constant rate that reaches a limit, at the start.
@@ -88,33 +91,59 @@ impl<'a> Search<'a> {
         let duration = |point: &RatePoint| point.share / combined(point, &self.at)[0].sqrt();
         let gap = gap * self.constraints.points.iter().map(duration).sum::<f64>();
         let barrier = gap / self.constraints.count() as f64;
+        let Some(mut value) = self.value(&self.at, barrier) else { return Ok(()) };
         for _ in 0..STEPS {
             checkpoint()?;
-            let Some(value) = self.expand(barrier) else { return Ok(()) };
+            self.expand(barrier);
             let slope = self.gradient.clone();
             banded::solve(&mut self.band, &mut self.gradient);
             let promised: f64 = self.gradient.iter().zip(&slope).map(|(step, slope)| step * slope).sum();
-            if !(promised > SETTLED * gap) || !self.descend(barrier, value, promised) {
+            if !(promised > SETTLED * gap) {
                 return Ok(());
             }
+            let Some(lower) = self.descend(barrier, value, promised) else { return Ok(()) };
+            value = lower;
         }
         Ok(())
     }
 
-    /// Takes the longest part of a step that lowers the function enough; false if none does.
-    fn descend(&mut self, barrier: f64, value: f64, promised: f64) -> bool {
-        let mut part = 1.0;
+    /// Takes the longest part of a step that lowers the function enough, and returns its value there; `None` if none does.
+    fn descend(&mut self, barrier: f64, value: f64, promised: f64) -> Option<f64> {
+        let mut part = self.longest();
         while part >= SHORTEST {
             for ((tried, at), step) in self.tried.iter_mut().zip(&self.at).zip(&self.gradient) {
                 *tried = at - part * step;
             }
-            if self.value(&self.tried, barrier).is_some_and(|lower| lower <= value - SUFFICIENT * part * promised) {
+            let lower = self.value(&self.tried, barrier);
+            if lower.is_some_and(|lower| lower <= value - SUFFICIENT * part * promised) {
                 std::mem::swap(&mut self.at, &mut self.tried);
-                return true;
+                return lower;
             }
             part *= 0.5;
         }
-        false
+        None
+    }
+
+    /// Longest part of the step that leaves room everywhere, if limits of jerks are straightened.
+    fn longest(&self) -> f64 {
+        // Largest part of a room that the whole step would take.
+        let mut taken = MOST_OF_ROOM;
+        for PointRows { point, joints, torques, .. } in self.constraints.all() {
+            let (y, step) = (combined(point, &self.at), combined(point, &self.gradient));
+            let slow = 1.0 / y[0].sqrt();
+            let slower = 0.5 * step[0] * slow / y[0];
+            let of_speed = -point.slowness * step[0] / (1.0 - point.slowness * y[0]);
+            taken = taken.max(of_speed).max(step[0] / y[0]);
+            for row in joints {
+                let ([a, b], [da, db]) = (row.used(&y), row.used(&step));
+                let of_acceleration = if da < 0.0 { -da / (1.0 - a) } else { da / (1.0 + a) };
+                taken = taken.max(of_acceleration).max(-(slower + db) / (slow - b)).max((db - slower) / (slow + b));
+            }
+            for (room, slope) in torques.iter().flat_map(|row| row.rooms(&y)) {
+                taken = taken.max(dot(&slope, &step) / room);
+            }
+        }
+        MOST_OF_ROOM / taken
     }
 
     /// The duration with the barrier; `None` outside of the constraints.
@@ -155,9 +184,8 @@ impl<'a> Search<'a> {
         Some(duration - barrier * logarithms.sum())
     }
 
-    /// Writes the gradient and the second derivatives of the duration with the barrier; returns its value.
-    fn expand(&mut self, barrier: f64) -> Option<f64> {
-        let value = self.value(&self.at, barrier)?;
+    /// Writes the gradient and the second derivatives of the duration with the barrier.
+    fn expand(&mut self, barrier: f64) {
         self.gradient.fill(0.0);
         self.band.fill([0.0; SIDE_DIAGONALS + 1]);
         for rows in self.constraints.all() {
@@ -173,7 +201,6 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        Some(value)
     }
 }
 
@@ -220,20 +247,39 @@ impl Local {
         local.gradient[0] = point.share * slower;
         local.curvature[0] = -1.5 * point.share * slower / y[0];
         local.add(barrier, 1.0 / (1.0 - point.slowness * y[0]), [-point.slowness, 0.0, 0.0]);
-        for row in joints {
-            let [a, b] = row.used(y);
-            let [a0, a1] = row.acceleration;
-            let [b0, b1, b2] = row.jerk;
-            let [above, below] = [1.0 / (1.0 - a), 1.0 / (1.0 + a)];
-            local.add_pair(barrier, [above - below, above * above + below * below], [a0, a1, 0.0]);
-            local.add(barrier, 1.0 / (slow - b), [slower - b0, -b1, -b2]);
-            local.add(barrier, 1.0 / (slow + b), [slower + b0, b1, b2]);
-        }
+        local.add_joints(barrier, joints, y, [slow, slower]);
         tips.iter().for_each(|tip| local.add_tip(barrier, tip, y));
         for (room, slope) in torques.iter().flat_map(|row| row.rooms(y)) {
             local.add(barrier, 1.0 / room, slope);
         }
         local
+    }
+
+    /// Adds the limits of joints; `slow` is 1 / sqrt(y) and `slower` its derivative.
+    fn add_joints(&mut self, barrier: f64, joints: &[JointRow], y: &[f64; 3], [slow, slower]: [f64; 2]) {
+        let (mut of_slow, mut of_slower, mut across) = (0.0, 0.0, [0.0; 3]);
+        for row in joints {
+            let [a, b] = row.used(y);
+            let [a0, a1] = row.acceleration;
+            // The rooms 1 - a and 1 + a: difference of their inverses, sum of the squares of these.
+            let rooms = 2.0 / (1.0 - a * a);
+            let difference = a * rooms;
+            self.add_pair(barrier, [difference, difference * difference + rooms], [a0, a1, 0.0]);
+            // The rooms slow - b and slow + b: also the sum of their inverses, and the difference of the squares of these.
+            let rooms = 2.0 / (slow * slow - b * b);
+            let [sum, difference] = [slow * rooms, b * rooms];
+            let squares = 0.5 * (sum * sum + difference * difference);
+            self.add_pair(barrier, [difference, squares], row.jerk);
+            of_slow += sum;
+            of_slower += squares;
+            let crossed = sum * difference;
+            across.iter_mut().zip(row.jerk).for_each(|(across, b)| *across += crossed * b);
+        }
+        let slower = barrier * slower;
+        self.gradient[0] -= of_slow * slower;
+        self.curvature[0] += of_slower * slower * (slower / barrier) - 2.0 * slower * across[0];
+        self.curvature[1] -= slower * across[1];
+        self.curvature[2] -= slower * across[2];
     }
 
     /// Adds - `barrier` log(room) for a room with this inverse and derivative.

@@ -13,12 +13,16 @@ const BISECTIONS: usize = 60;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clock<'a> {
     path: &'a JointPath,
+    /// Factor of the largest path speeds.
+    pub speedup: f64,
 }
 
 /// Where the path is at a reading of the clock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathPoint<'a> {
     path: &'a JointPath,
+    /// Factor of the largest path speeds.
+    speedup: f64,
     piece: usize,
     from: f64,
     /// Derivatives of the path parameter by the clock.
@@ -27,7 +31,7 @@ pub(super) struct PathPoint<'a> {
 
 impl<'a> Clock<'a> {
     pub(super) fn new(path: &'a JointPath) -> Self {
-        Self { path }
+        Self { path, speedup: 1.0 }
     }
 
     /// Path parameter of the start, and the length of the path.
@@ -65,14 +69,14 @@ impl<'a> Clock<'a> {
             if is_inside { (piece, (s - from).clamp(0.0, self.path.length(piece))) } else { self.path.locate(s) };
         let left = 1.0 - u;
         let rates = [30.0 * (u * left).powi(2), 60.0 * u * left * (left - u), 60.0 * (1.0 - 6.0 * u * left)];
-        PathPoint { path: self.path, piece, from, rates: rates.map(|rate| length * rate) }
+        PathPoint { path: self.path, speedup: self.speedup, piece, from, rates: rates.map(|rate| length * rate) }
     }
 }
 
 impl PathPoint<'_> {
     /// 1 / (du/dt)^2 where the path has its largest speed; zero without one.
     pub(super) fn slowness(&self) -> f64 {
-        (self.rates[0] / self.path.largest_speed(self.piece)).powi(2)
+        (self.rates[0] / (self.speedup * self.path.largest_speed(self.piece))).powi(2)
     }
 
     /// Position of a joint, and its first three derivatives by the clock.

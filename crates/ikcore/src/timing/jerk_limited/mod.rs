@@ -12,18 +12,21 @@
 //! | `rate_spline` | quadratic splines on any knots |
 //! | `constraints` | the limits at points of the clock, as rows for y and its derivatives |
 //! | `barrier` | the fastest rate within the limits, by Newton's method with a barrier |
+//! | `straight_line` | the fastest motion along a straight line, in closed form |
 
 mod barrier;
 mod clock;
 mod constraints;
 mod rate_spline;
 mod readings;
+mod straight_line;
 
 use barrier::{faster_rate, fastest_rate};
 use clock::Clock;
 use constraints::Constraints;
 use rate_spline::RateSpline;
 use readings::Readings;
+use straight_line::straight_line;
 
 use super::constant_limits::ConstantLimits;
 use super::joint_path::JointPath;
@@ -36,10 +39,14 @@ use crate::trajectory::Trajectory;
 /// Rounds of refinement of the knots at most; one that saves less than this fraction of the duration is the last.
 const REFINEMENTS: usize = 6;
 const WORTHWHILE: f64 = 1e-3;
+/// One that saves less than this fraction is the last, even if the motion exceeds limits between the places where they are imposed.
+const WORTHLESS: f64 = 1e-4;
 /// Excess over a limit between the places where it is imposed that calls for another round.
 const FAITHFUL: f64 = 2e-3;
 /// Change of the jerk in an interval or at a knot, as a part of its limit, at which intervals are halved.
 const CHANGE: f64 = 0.3;
+/// Slowdown of a motion along a path with speeds of its own from which on these are asked for again, so that they are reached.
+const SHORT: f64 = 1e-4;
 /// Number of the shortest intervals that a motion may consist of.
 const SHORTEST: f64 = 5_000.0;
 
@@ -67,12 +74,15 @@ fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, roun
             remedy: "its curvature jumps; use a spline".into(),
         });
     }
-    let clock = Clock::new(path);
+    if let Some(motion) = straight_line(path, limits)? {
+        return Ok(motion);
+    }
+    let mut clock = Clock::new(path);
     let Readings { knots, step } = Readings::new(&clock, path, profile, limits);
     let mut rate = RateSpline::new(knots);
     let mut constraints = Constraints::new(&clock, &rate, &vec![step; rate.intervals()], limits);
     fastest_rate(&mut rate, &mut constraints)?;
-    let (mut best, _) = played(path, &clock, &rate, limits)?;
+    let (mut best, mut slowed) = played(path, &clock, &rate, limits)?;
     for _ in 0..rounds {
         let parts = parts(&rate, &constraints, best.duration() / SHORTEST);
         if parts.iter().all(|parts| *parts == 1) {
@@ -83,11 +93,22 @@ fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, roun
         faster_rate(&mut rate, &mut constraints)?;
         let (motion, slowdown) = played(path, &clock, &rate, limits)?;
         let saved = 1.0 - motion.duration() / best.duration();
+        slowed = slowdown;
         if saved > 0.0 {
             best = motion;
         }
-        if saved < WORTHWHILE && slowdown < 1.0 + FAITHFUL {
+        if saved < WORTHLESS || saved < WORTHWHILE && slowdown < 1.0 + FAITHFUL {
             break;
+        }
+    }
+    if rounds > 0 && path.has_speeds() && slowed > 1.0 + SHORT {
+        // The whole motion was slowed, and with it the speeds that the path has.
+        clock.speedup = slowed;
+        constraints = Constraints::new(&clock, &rate, &rate.durations(), limits);
+        faster_rate(&mut rate, &mut constraints)?;
+        let (motion, _) = played(path, &clock, &rate, limits)?;
+        if motion.duration() < best.duration() {
+            best = motion;
         }
     }
     Ok(best)
@@ -137,7 +158,7 @@ fn played(path: &JointPath, clock: &Clock, rate: &RateSpline, limits: &ConstantL
     }
     let motion = Trajectory::from_samples(path.joints().to_vec(), &times, &q, Some(&qd), Some(&qdd))?;
     // A path with speeds of its own is not passed faster than these.
-    let least = if path.has_speeds() { 1.0 } else { 0.0 };
+    let least = if path.has_speeds() { clock.speedup } else { 0.0 };
     let slowdown = limits.slowdown(&motion).max(least);
     Ok((motion.slowed(slowdown * (1.0 + ROUNDING))?, slowdown))
 }
