@@ -74,7 +74,7 @@ impl Dynamics {
     /// stages.
     #[cold]
     fn curve_bias(&self, stage: usize, frame: &Frame, q: f64, rate: f64) -> [[f64; 3]; 2] {
-        let Some(curved) = self.curves.iter().find(|curve| curve.stage == stage) else { return [[0.0; 3]; 2] };
+        let Some(curved) = self.curves.at(stage) else { return [[0.0; 3]; 2] };
         let [_, _, bend] = curved.curve.at(q);
         let along = restored(frame).axes[2].map(|entry| bend * rate * rate * entry);
         if curved.turns { [along, [0.0; 3]] } else { [[0.0; 3], along] }

@@ -3,7 +3,7 @@
 use super::inertia::Inertia;
 use super::mass_moments::MassMoments;
 use crate::kinematics::chain::Transmission;
-use crate::kinematics::{CurvedStage, RotationVector};
+use crate::kinematics::{CurvedStages, RotationVector};
 use crate::math::so3::norm;
 
 /// Friction and rotor of a joint, with those of its followers reflected.
@@ -44,7 +44,7 @@ pub struct Dynamics {
     pub(super) drives: Vec<JointDrive>,
     pub(super) vector: Option<RotationVector>,
     /// First stages of polynomial couplings.
-    pub(super) curves: Vec<CurvedStage>,
+    pub(super) curves: CurvedStages,
 }
 
 impl Dynamics {
@@ -53,7 +53,7 @@ impl Dynamics {
         bodies: Vec<MovingBody>,
         gravity: [f64; 3],
         drives: Vec<JointDrive>,
-        (vector, curves): (Option<RotationVector>, Vec<CurvedStage>),
+        (vector, curves): (Option<RotationVector>, CurvedStages),
     ) -> Self {
         let mut carried: Vec<f64> =
             std::iter::once(&base).chain(bodies.iter().map(|body| &body.moments)).map(|m| m.mass).collect();

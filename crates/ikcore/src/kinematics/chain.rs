@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::joint_curve::{CurvedStage, JointCurve};
+use super::joint_curve::{CurvedStage, CurvedStages, JointCurve};
 use super::rotation_vector::RotationVector;
 use super::stages::Stages;
 use crate::math::vector3::{add_scaled, cross, scaled, sub};
@@ -140,7 +140,7 @@ pub(crate) struct Chain {
     /// Rotation vector, whose stages do not turn about axes of their own.
     pub vector: Option<RotationVector>,
     /// First stages of polynomial couplings.
-    pub curves: Vec<CurvedStage>,
+    pub curves: CurvedStages,
 }
 
 /// Stage counts for which kernels are compiled; chains are padded to the next one.
@@ -150,11 +150,6 @@ pub(super) const SIZES: [usize; 8] = [4, 5, 6, 7, 8, 12, 16, 32];
 const LANES: usize = 4;
 
 impl Chain {
-    /// Returns the curve of a stage, if it is the first one of a curve.
-    pub(super) fn curve_at(&self, stage: usize) -> Option<&CurvedStage> {
-        self.curves.iter().find(|curve| curve.stage == stage)
-    }
-
     /// Returns the number of stages with padding: one of [`SIZES`].
     pub(super) fn padded_stages(&self) -> usize {
         padded(self.moving)
@@ -178,13 +173,14 @@ pub(crate) struct ChainFolder {
     motions: Vec<Transmission>,
     links: Vec<LinkFrame>,
     vector: Option<RotationVector>,
-    curves: Vec<CurvedStage>,
+    curves: CurvedStages,
 }
 
 impl ChainFolder {
     /// Creates an empty chain that starts at `base`.
     pub fn new(base: &Pose) -> Self {
-        Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None, curves: vec![] }
+        let curves = CurvedStages::default();
+        Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None, curves }
     }
 
     /// Appends a constant transform.

@@ -3,7 +3,7 @@
 
 use super::chain::Transmission;
 use super::four_forward_pass::RunningFrames;
-use super::joint_curve::CurvedStage;
+use super::joint_curve::{CurvedStage, CurvedStages};
 use super::rotation_vector::RotationVector;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
@@ -16,7 +16,7 @@ use crate::math::sincos::sincos_eight;
 pub(crate) struct EightStages {
     stages: Vec<Stage>,
     vector: Option<RotationVector>,
-    curves: Vec<CurvedStage>,
+    curves: CurvedStages,
 }
 
 #[derive(Debug, Clone)]
@@ -34,7 +34,7 @@ impl EightStages {
     pub fn new(
         stages: impl Iterator<Item = (usize, Frame, Transmission)>,
         vector: Option<RotationVector>,
-        curves: Vec<CurvedStage>,
+        curves: CurvedStages,
     ) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
@@ -60,7 +60,7 @@ impl EightStages {
             let of_vector = vector.as_ref().and_then(|(vector, turned)| vector.own_stage(i).map(|own| &turned[own]));
             let moved = if let Some(turned) = of_vector {
                 RunningFrames::<Eight<A>>::of(turned)
-            } else if let Some(curve) = self.curves.iter().find(|curve| curve.stage == i) {
+            } else if let Some(curve) = self.curves.at(i) {
                 // With an axis of unit length: what these frames carry has no use for the slope.
                 let [sine, cosine, slide] = curve_lanes(curve, qs[motion.joint]).map(Eight::<A>::of);
                 RunningFrames::of(frame).moved(sine, cosine, slide)

@@ -4,25 +4,20 @@
 //! this axis times b is the velocity per unit rate of the joint, as for any other stage; links and later stages never use this frame.
 //! The second stage, which no joint moves, has the axis of unit length again.
 
-use serde::{Deserialize, Serialize};
-
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
 use crate::math::polynomial;
 use crate::math::so3::cross;
-
-/// Highest degree of a coupling, that of MuJoCo.
-const DEGREE: usize = 4;
 
 /// Share of a bound that exceeds the rounding of its computation.
 const ROUNDING: f64 = 1e-9;
 
 /// Position of a follower by that of its leader, q: c0 + c1 q + c2 q^2 + c3 q^3 + c4 q^4 between the ends of a range, and on along
 /// the tangents beyond, so that slope and second derivative are bounded.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct JointCurve {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct JointCurve {
     /// Coefficients (rad or m, by powers of rad or m).
-    pub coefficients: [f64; DEGREE + 1],
+    pub coefficients: [f64; 5],
     /// Range of q within which the polynomial holds (rad, m).
     pub range: [f64; 2],
 }
@@ -55,11 +50,13 @@ impl JointCurve {
         ends.iter().fold(inside, |(least, most), end| (least.min(*end), most.max(*end)))
     }
 
-    /// Returns the curve times `scale`, plus `offset`.
-    pub(crate) fn driven(&self, scale: f64, offset: f64) -> Self {
-        let mut coefficients = self.coefficients.map(|c| scale * c);
-        coefficients[0] += offset;
-        Self { coefficients, ..*self }
+    /// Whether slope and second derivative are bounded, as they are between finite limits.
+    pub fn is_bounded(&self) -> bool {
+        let [lower, upper] = self.range;
+        lower.is_finite() && upper.is_finite() && {
+            let [slope, bend] = self.largest();
+            slope.is_finite() && bend < f64::from(f32::MAX)
+        }
     }
 }
 
@@ -104,6 +101,32 @@ impl CurvedStage {
     }
 }
 
+/// First stages of all curves of a chain or tree.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CurvedStages(Vec<CurvedStage>);
+
+impl CurvedStages {
+    /// Adds a stage that comes after the others.
+    pub fn push(&mut self, curve: CurvedStage) {
+        self.0.push(curve);
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &CurvedStage> {
+        self.0.iter()
+    }
+
+    /// Returns the curve of stage number `stage`, if it is the first one of a curve.
+    #[inline]
+    pub fn at(&self, stage: usize) -> Option<&CurvedStage> {
+        let place = self.0.binary_search_by_key(&stage, |curve| curve.stage).ok()?;
+        Some(&self.0[place])
+    }
+}
+
 /// Returns the frame of the stage after one that [`CurvedStage::shown`] has written: the same with an axis of unit length.
 pub(crate) fn restored(shown: &Frame) -> Frame {
     let [x, y, _] = shown.axes;
@@ -141,7 +164,8 @@ mod tests {
                 assert!((at[1] - before[1]).abs() <= 0.002 * sharpest + 1e-9, "{curve:?}");
                 (slope_seen, before) = (slope_seen.max(at[1].abs()), at);
             }
-            assert!(steepest <= 1.01 * slope_seen + 0.02 * sharpest, "{curve:?}");
+            // The largest slope of a constant is above zero.
+            assert!(steepest <= 1.01 * slope_seen + 0.02 * sharpest + f64::MIN_POSITIVE, "{curve:?}");
         }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::chain::{Chain, LinkFrame, Transmission, basis_with_z_along};
-use super::joint_curve::{CurvedStage, JointCurve, restored};
+use super::joint_curve::{CurvedStage, CurvedStages, JointCurve, restored};
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, Pose, STACK_DOF, pose};
@@ -120,12 +120,14 @@ impl LinkTree {
     }
 
     /// Returns the first stages of all curves, each with its number among [`stages`](Self::stages).
-    pub fn curves(&self, chain: &Chain) -> Vec<CurvedStage> {
-        let of_branches = self.branches.iter().filter_map(|stage| match &stage.curve {
-            Some(BranchCurve::First(curve)) => Some(*curve),
-            _ => None,
-        });
-        chain.curves.iter().copied().chain(of_branches).collect()
+    pub fn curves(&self, chain: &Chain) -> CurvedStages {
+        let mut curves = chain.curves.clone();
+        for stage in &self.branches {
+            if let Some(BranchCurve::First(curve)) = &stage.curve {
+                curves.push(*curve);
+            }
+        }
+        curves
     }
 
     /// Returns the parent of frame `frame` > 0.

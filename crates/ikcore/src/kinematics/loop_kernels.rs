@@ -12,7 +12,7 @@ fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) 
     let vector = chain.vector.as_ref().map(|vector| (vector, vector.frames(&vector.phi(q))));
     let mut frame = Frame::IDENTITY;
     for (i, motion) in chain.motions[..chain.moving].iter().enumerate() {
-        if let Some(curve) = chain.curve_at(i) {
+        if let Some(curve) = chain.curves.at(i) {
             let q = q[motion.joint];
             frame = frame.then::<NoFma>(&curve.placed(&chain.stages.frame(i), q));
             visit(i, &curve.shown(&frame, q));

@@ -39,8 +39,7 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
-pub use joint_curve::JointCurve;
-pub(crate) use joint_curve::{CurvedStage, restored};
+pub(crate) use joint_curve::{CurvedStages, JointCurve, restored};
 pub use reach::{Reach, ReachShortfall};
 pub(crate) use rotation_vector::RotationVector;
 pub use screws::{Screw, Screws};

@@ -118,7 +118,7 @@ impl Reach {
     /// Extends this reach of the links of `chain` by the prismatic motion between these limits.
     pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
         let slide = |(stage, motion): (usize, &Transmission)| {
-            let Some(curve) = chain.curve_at(stage) else { return longest_slide(motion, lower, upper) };
+            let Some(curve) = chain.curves.at(stage) else { return longest_slide(motion, lower, upper) };
             curve.longest_slide(lower[motion.joint], upper[motion.joint])
         };
         let slides: f64 = chain.motions.iter().enumerate().map(slide).sum();

@@ -58,8 +58,7 @@ pub(crate) fn sagitta_along<'a>(
 /// Along a straight line in joint space, p(s) with s from 0 to 1, a rotation by t_k about axis k accelerates a point at distance l_k
 /// from it by t_k^2 l_k, and the rotation by t_i about an axis i nearer to the base turns its velocity t_k l_k by t_i: once on either
 /// side. A curve with |p''| <= b is within b / 8 of its chord. A rotation vector that changes by t accelerates a point at distance l
-/// from its origin by |t|^2 l at most, which is no more. A polynomial coupling adds
-/// its own second derivative.
+/// from its origin by |t|^2 l at most, which is no more. A polynomial coupling adds its own second derivative.
 fn sagitta_by<'a>(
     carriers: impl Iterator<Item = (usize, &'a Transmission)>,
     lever: impl Fn(&Transmission, usize) -> f64,
@@ -93,7 +92,7 @@ mod tests {
     use super::*;
     use crate::math::pose;
     use crate::rng;
-    use crate::robot::{ChainBuilder, Drive, Element, Joint, JointCurve, JointKind};
+    use crate::robot::{ChainBuilder, Drive, Element, Joint, JointKind};
     use crate::shape::Shape;
 
     #[test]
@@ -107,12 +106,7 @@ mod tests {
         let mut arm = ChainBuilder::new("bent", "base");
         let joints =
             ["a", "b", "c"].map(|name| arm.add_joint(Joint::new(name, JointKind::Revolute).with_range(-1.5, 1.5)));
-        let curved = |axis, turns, coefficients| Element::Curved {
-            axis,
-            turns,
-            joint: joints[1],
-            curve: JointCurve { coefficients, range: [-1.6, 1.6] },
-        };
+        let curved = |axis, turns, polynomial| Element::Curved { axis, turns, joint: joints[1], polynomial };
         arm.moving(joints[0], JointKind::Revolute, Vector3::z(), Drive::DIRECT);
         arm.fixed(pose::translation(0.1, 0.0, 0.3));
         arm.moving(joints[1], JointKind::Revolute, Vector3::y(), Drive::DIRECT);

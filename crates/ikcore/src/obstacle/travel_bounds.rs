@@ -38,7 +38,7 @@ impl MovingElements {
             at(lower).abs().max(at(upper).abs())
         };
         let mut slides: Vec<f64> = stages.iter().map(slide).collect();
-        for curve in robot.curves() {
+        for curve in robot.curves().iter() {
             let (lower, upper) = robot.joints()[stages[curve.stage].2.joint].sampling_range();
             slides[curve.stage] = curve.longest_slide(lower, upper);
         }

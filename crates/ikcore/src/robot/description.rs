@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::joint::{Joint, JointKind};
 use crate::error::{Error, Result, require_finite};
+use crate::kinematics::RotationVector;
 use crate::kinematics::chain::{Chain, ChainFolder, Transmission};
-use crate::kinematics::{JointCurve, RotationVector};
 use crate::math::{MAX_DOF, Pose, pose};
 
 /// Squares of longer lengths (m) are not finite.
@@ -40,7 +40,7 @@ pub enum Element {
         /// The first of the three.
         joint: usize,
     },
-    /// A motion by a polynomial of `q[joint]`.
+    /// A motion by a polynomial of `q[joint]`, which needs position limits.
     Curved {
         /// Axis of the motion, of unit length.
         axis: Vector3<f64>,
@@ -48,8 +48,9 @@ pub enum Element {
         turns: bool,
         /// The independent joint that drives it.
         joint: usize,
-        /// The polynomial.
-        curve: JointCurve,
+        /// Coefficients of the polynomial (rad or m, by ascending powers of rad or m). From a little beyond the limits of the joint on it follows
+        /// its tangents.
+        polynomial: [f64; 5],
     },
 }
 
@@ -103,7 +104,9 @@ impl Description {
                 Element::Fixed(transform) => chain.fixed(transform),
                 Element::Link(_) => chain.link(),
                 Element::RotationVector { joint } => chain.rotation_vector(*joint),
-                Element::Curved { axis, turns, joint, curve } => chain.curved(axis, *joint, *turns, curve),
+                Element::Curved { axis, turns, joint, polynomial } => {
+                    chain.curved(axis, *joint, *turns, &self.joints[*joint].curve(polynomial));
+                }
                 // A follower whose factor is zero stands still.
                 Element::Moving { axis, turns, scale: 0.0, offset, .. } => chain.fixed(&moved(axis, *turns, *offset)),
                 Element::Moving { axis, turns, joint, scale, offset } => {
@@ -139,7 +142,7 @@ impl Description {
             Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
             _ => {
                 element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str()))?;
-                element.drivers().try_for_each(|joint| element.require_bounded(&self.name, &self.joints[joint].name))
+                element.require_bounded(&self.name, &self.joints)
             }
         })
     }
@@ -199,23 +202,29 @@ impl Element {
         self
     }
 
-    /// Err for a coupling by a polynomial that is not bounded; `driver` is the joint that leads.
-    pub(super) fn require_bounded(&self, robot: &str, driver: &str) -> Result<()> {
-        let Self::Curved { curve, .. } = self else { return Ok(()) };
-        let [lower, upper] = curve.range;
-        if lower.is_finite() && upper.is_finite() && lower <= upper {
-            let [slope, bend] = curve.largest();
-            if slope.is_finite() && bend < f64::from(f32::MAX) {
-                return Ok(());
-            }
-        }
-        let problem = format!("a joint follows joint '{driver}' by a polynomial: give '{driver}' position limits");
+    /// Err for a polynomial whose slope is not bounded, where one of `joints` drives it.
+    pub(super) fn require_bounded(&self, robot: &str, joints: &[Joint]) -> Result<()> {
+        let Self::Curved { joint, polynomial, .. } = self else { return Ok(()) };
+        let Some(leader) = joints.get(*joint).filter(|leader| !leader.curve(polynomial).is_bounded()) else {
+            return Ok(());
+        };
+        let name = &leader.name;
+        let problem = format!("a joint follows joint '{name}' by a polynomial: give '{name}' position limits");
         Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })
     }
 
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
     pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem: problem.into() };
+        let driven = |joint: usize, axis: &Vector3<f64>| {
+            let Some(driver) = driver(joint) else {
+                return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+            };
+            if !((axis.norm() - 1.0).abs() < 1e-9) {
+                return Err(invalid(format!("joint '{driver}' has a zero or non-finite axis")));
+            }
+            Ok(driver)
+        };
         match self {
             Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Self::Link(_) => Ok(()),
@@ -223,23 +232,13 @@ impl Element {
                 Some(_) => Ok(()),
                 None => Err(invalid(format!("joints {joint} to {} of a rotation vector do not exist", joint + 2))),
             },
-            Self::Curved { axis, turns, joint, curve } => {
-                let Some(driver) = driver(*joint) else {
-                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
-                };
-                let of_driver = |_| format!("joint '{driver}'");
-                require_finite("coefficients of a polynomial coupling", &curve.coefficients, of_driver)?;
-                let of_axis = Self::Moving { axis: *axis, turns: *turns, joint: *joint, scale: 1.0, offset: 0.0 };
-                of_axis.validate(robot, |_| Some(driver))
-            }
             Self::Moving { axis, joint, scale, offset, .. } => {
-                let Some(driver) = driver(*joint) else {
-                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
-                };
-                if !((axis.norm() - 1.0).abs() < 1e-9) {
-                    return Err(invalid(format!("joint '{driver}' has a zero or non-finite axis")));
-                }
+                let driver = driven(*joint, axis)?;
                 require_finite("scale and offset of a joint", &[*scale, *offset], |_| format!("joint '{driver}'"))
+            }
+            Self::Curved { axis, joint, polynomial, .. } => {
+                let driver = driven(*joint, axis)?;
+                require_finite("coefficients of a polynomial coupling", polynomial, |_| format!("joint '{driver}'"))
             }
         }
     }

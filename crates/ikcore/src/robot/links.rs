@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::kinematics::CurvedStage;
+use crate::kinematics::CurvedStages;
 use crate::kinematics::chain::{LinkFrame, StageAxis, Transmission};
 use crate::kinematics::eight_frames::EightStages;
 use crate::kinematics::link_tree::FrameBuffer;
@@ -193,7 +193,7 @@ impl Robot {
     }
 
     /// The first elements of polynomial couplings, each with its number among [`moving_elements`](Self::moving_elements).
-    pub(crate) fn curves(&self) -> Vec<CurvedStage> {
+    pub(crate) fn curves(&self) -> CurvedStages {
         self.tree().curves(self.chain())
     }
 

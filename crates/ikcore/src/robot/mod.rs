@@ -57,7 +57,6 @@ mod upright_axis;
 mod visual;
 mod wrapped;
 
-pub use crate::kinematics::JointCurve;
 pub(crate) use arms::Choice;
 pub(crate) use body::Bodies;
 pub use body::{Body, BodySource};

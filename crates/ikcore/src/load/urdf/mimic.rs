@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::document::{Document, UrdfKind};
+use super::document::{Document, Mimic, UrdfKind};
 use crate::error::{Error, Result, suggestion};
-use crate::robot::{Drive, InertiaFault, Joint, JointCurve, JointKind};
+use crate::robot::{Drive, InertiaFault, Joint, JointKind};
 use crate::wording::listed;
 
 /// Independent joint that drives a joint (usually the joint itself), and the drive.
@@ -18,7 +18,8 @@ pub(super) struct Coupling {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum MimicDrive {
     Linear(Drive),
-    Polynomial(JointCurve),
+    /// Coefficients by ascending powers.
+    Polynomial([f64; 5]),
 }
 
 impl MimicDrive {
@@ -30,13 +31,14 @@ impl MimicDrive {
             Self::Linear(Drive { scale, offset }) => {
                 Self::Linear(Drive { scale: factor * scale, offset: factor * offset + constant })
             }
-            Self::Polynomial(curve) => Self::Polynomial(curve.driven(factor, constant)),
+            Self::Polynomial(coefficients) => {
+                let mut driven = coefficients.map(|c| factor * c);
+                driven[0] += constant;
+                Self::Polynomial(driven)
+            }
         }
     }
 }
-
-/// How far beyond the limits of its leader a polynomial holds: a start a little outside is led inside.
-const SLACK: [f64; 2] = [0.2, 0.02];
 
 /// Couplings of a document, with a cache.
 pub(super) struct Couplings<'a> {
@@ -58,34 +60,12 @@ impl<'a> Couplings<'a> {
             let (follower, master) = (&joints[joint].name, &joints[coupling.master].name);
             return Err(self.document.error_at(joint, format!("joint '{follower}' mimics '{master}', which is fixed")));
         }
-        self.require_one_polynomial(joint)?;
-        Ok(self.cached(coupling, &followers))
+        self.cached(coupling, &followers)
     }
 
-    /// Err for a joint that follows another one by a polynomial, which follows a third one by a polynomial.
-    pub(super) fn require_one_polynomial(&self, joint: usize) -> Result<()> {
-        let (document, mut at, mut curved) = (self.document, joint, None);
-        // Joints beside the chain may follow in a circle.
-        for _ in 0..document.joints.len() {
-            let Some(mimic) = &document.joints[at].mimic else { return Ok(()) };
-            let Some(next) = document.joint_number(&mimic.joint) else { return Ok(()) };
-            if mimic.polynomial.is_some()
-                && let Some(first) = curved.replace(at)
-            {
-                let [outer, inner]: [&str; 2] = [first, at].map(|number: usize| document.joints[number].name.as_str());
-                let problem = format!(
-                    "joint '{outer}' follows joint '{inner}' by a polynomial, which follows another one by a polynomial: at most one of both is followed"
-                );
-                return Err(document.error_at(joint, problem));
-            }
-            at = next;
-        }
-        Ok(())
-    }
-
-    /// Resolves the coupling of a joint beside the chain, without errors: if the chain of `<mimic>` elements does not end in
-    /// a movable joint, its last movable joint counts as independent.
-    pub(super) fn of_off_chain(&mut self, joint: usize) -> Coupling {
+    /// Resolves the coupling of a joint beside the chain: if the chain of `<mimic>` elements does not end in a movable joint, its last
+    /// movable joint counts as independent.
+    pub(super) fn of_off_chain(&mut self, joint: usize) -> Result<Coupling> {
         let mut followers = vec![];
         let movable = |joint: usize| self.document.joints[joint].kind.moves_one_way();
         match self.master_above(joint, &mut followers) {
@@ -125,32 +105,34 @@ impl<'a> Couplings<'a> {
         }
     }
 
-    /// Returns the polynomial of the joint that `coupling` drives, as a function of its master. A polynomial of another one stays as
-    /// that one is: on the chain, [`require_one_polynomial`](Self::require_one_polynomial) has refused it.
-    fn along(&self, coefficients: [f64; 5], Coupling { master, drive }: Coupling) -> MimicDrive {
-        let joint = &self.document.joints[master];
-        let slack = SLACK[usize::from(joint.kind == UrdfKind::Prismatic)];
-        let range = [joint.range.0 - slack, joint.range.1 + slack];
-        match drive {
-            MimicDrive::Linear(drive) => {
-                MimicDrive::Polynomial(JointCurve { coefficients: composed(&coefficients, drive), range })
-            }
-            MimicDrive::Polynomial(_) => drive,
-        }
-    }
-
     /// Caches the couplings of `followers`, the last of which follows `coupling`, and returns the coupling of the first.
-    fn cached(&mut self, mut coupling: Coupling, followers: &[usize]) -> Coupling {
+    fn cached(&mut self, mut coupling: Coupling, followers: &[usize]) -> Result<Coupling> {
         for &follower in followers.iter().rev() {
             if let Some(mimic) = &self.document.joints[follower].mimic {
-                if let Some(coefficients) = mimic.polynomial {
-                    coupling.drive = self.along(coefficients, coupling);
+                if let Some(polynomial) = &mimic.polynomial {
+                    coupling.drive = self.along(polynomial, follower, mimic, coupling)?;
                 }
                 coupling.drive = coupling.drive.times(mimic.multiplier, mimic.offset);
             }
             self.found[follower] = Some(coupling);
         }
-        coupling
+        Ok(coupling)
+    }
+
+    /// Returns a polynomial of the joint that `coupling` drives as a function of its master.
+    fn along(&self, polynomial: &[f64; 5], follower: usize, mimic: &Mimic, coupling: Coupling) -> Result<MimicDrive> {
+        let joints = &self.document.joints;
+        match coupling.drive {
+            MimicDrive::Linear(drive) => Ok(MimicDrive::Polynomial(composed(polynomial, drive))),
+            MimicDrive::Polynomial(_) => {
+                let problem = format!(
+                    "joint '{}' follows joint '{}' by a polynomial, which follows joint '{}' by a polynomial: at most one of both is \
+                     followed",
+                    joints[follower].name, mimic.joint, joints[coupling.master].name
+                );
+                Err(self.document.error_at(follower, problem))
+            }
+        }
     }
 }
 
@@ -177,7 +159,7 @@ fn unknown_target(document: &Document, follower: usize, target: &str) -> Error {
 pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: MimicDrive) -> Result<(), String> {
     let Drive { scale, offset } = match drive {
         MimicDrive::Linear(drive) => drive,
-        MimicDrive::Polynomial(curve) => return narrow_by_curve(master, follower, &curve),
+        MimicDrive::Polynomial(polynomial) => return narrow_by_polynomial(master, follower, &polynomial),
     };
     if scale == 0.0 {
         return Ok(());
@@ -207,8 +189,9 @@ pub(super) fn narrow(master: &mut Joint, follower: &Joint, drive: MimicDrive) ->
 }
 
 /// [`narrow`] for a follower by a polynomial, whose position limits its master has to keep already.
-fn narrow_by_curve(master: &mut Joint, follower: &Joint, curve: &JointCurve) -> Result<(), String> {
-    if curve.range.iter().any(|end| end.is_infinite()) {
+fn narrow_by_polynomial(master: &mut Joint, follower: &Joint, polynomial: &[f64; 5]) -> Result<(), String> {
+    let curve = master.curve(polynomial);
+    if !curve.is_bounded() {
         return Ok(()); // the robot is refused when it is complete
     }
     let (least, most) = curve.values(master.lower, master.upper);
@@ -227,9 +210,7 @@ fn narrow_by_curve(master: &mut Joint, follower: &Joint, curve: &JointCurve) -> 
         ));
     }
     let [steepest, _] = curve.largest();
-    if steepest > 0.0 {
-        master.velocity = master.velocity.min(follower.velocity / steepest);
-    }
+    master.velocity = master.velocity.min(follower.velocity / steepest);
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
-/// Mimic joint beside the chain that follows an independent joint.
+/// Mimic joint that follows an independent joint.
 pub(super) struct MimicFollower {
     pub(super) joint: Joint,
     /// Index of its master in q.
@@ -35,8 +35,7 @@ pub(super) fn of(
         let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
             true => {
-                couplings.require_one_polynomial(at.joint)?;
-                let coupling = couplings.of_off_chain(at.joint);
+                let coupling = couplings.of_off_chain(at.joint)?;
                 let joint = match drivers.get(&coupling.master) {
                     Some(known) => *known,
                     None => {

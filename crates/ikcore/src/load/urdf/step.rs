@@ -28,8 +28,8 @@ pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Driven
             let axis = axis(document, step.joint)?;
             Some(match drive.times(sign, 0.0) {
                 MimicDrive::Linear(drive) => Element::moving(joint, kind, axis, drive),
-                MimicDrive::Polynomial(curve) => {
-                    Element::Curved { axis: axis.normalize(), turns: kind.turns(), joint, curve }
+                MimicDrive::Polynomial(polynomial) => {
+                    Element::Curved { axis: axis.normalize(), turns: kind.turns(), joint, polynomial }
                 }
             })
         }
