@@ -127,7 +127,7 @@ impl Goal {
     ///
     /// # Errors
     /// As [`validate_numbers`](Self::validate_numbers) and, for the posture, [`Robot::check`]; [`Error::Contradiction`] for a
-    /// clearance goal without collision checks; [`Error::NoDynamics`], [`Error::WrongLength`] and [`Error::OutOfRange`] for torques.
+    /// clearance goal without collision checks, and for goals that a floating base or a polynomial coupling excludes; [`Error::NoDynamics`], [`Error::WrongLength`] and [`Error::OutOfRange`] for torques.
     pub fn validate(&self, robot: &Robot, among_obstacles: bool) -> Result<()> {
         self.validate_numbers()?;
         match self {
@@ -149,12 +149,7 @@ impl Goal {
             Self::Manipulability { .. } | Self::LinkManipulability { .. } | Self::LeastTorque { .. }
                 if robot.curve_leader().is_some() =>
             {
-                let goal = match self {
-                    Self::Manipulability { .. } => "the goal Manipulability",
-                    Self::LinkManipulability { .. } => "the goal LinkManipulability",
-                    _ => "the goal LeastTorque",
-                };
-                robot.require_linear_couplings(goal)
+                robot.require_linear_couplings("a goal of manipulability or torques")
             }
             Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
             Self::Manipulability { tip: None, .. } => {
