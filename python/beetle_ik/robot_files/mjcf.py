@@ -66,7 +66,8 @@ def _read(mujoco: Any, model: str | os.PathLike[str], trusted: bool) -> Any:
     try:
         return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
     except ValueError as error:
-        raise InvalidInputError(f"MuJoCo cannot read the model: {error!s:.200}") from error
+        file = "" if "<" in text else f"{text:.200}: "
+        raise InvalidInputError(f"MuJoCo cannot read the model: {file}{error!s:.200}") from error
 
 
 class _Reader:
