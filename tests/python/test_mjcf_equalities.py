@@ -368,9 +368,9 @@ def test_torques_of_bent_joints_are_those_of_mujoco(coefficients: str) -> None:
         data.qpos, data.qvel, data.qacc = positions, to_all @ qd, to_all @ qdd + bias
         model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
         mujoco.mj_inverse(model, data)
-        np.testing.assert_allclose(robot.inverse_dynamics(q, qd, qdd), to_all.T @ data.qfrc_inverse, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(robot.torques(q, qd, qdd), to_all.T @ data.qfrc_inverse, rtol=0, atol=1e-9)
         mass = np.zeros((7, 7))
-        mujoco.mj_fullM(model, mass, data.qM)
+        mujoco.mj_fullM(model, data, mass)
         np.testing.assert_allclose(robot.mass_matrix(q), to_all.T @ mass @ to_all, rtol=0, atol=1e-9)
 
 
@@ -379,10 +379,10 @@ def test_bent_joints_are_solved_planned_and_tracked(coefficients: str) -> None:
     robot = bik.Robot.from_mjcf(bent(coefficients), tip="tool")
     assert robot.closed_form == "none: a joint follows another one by a polynomial"
     limits = bik.Limits(velocity=1.0, acceleration=5.0)
-    ball = bik.obstacles.sphere([0.35, 0.2, 0.7], 0.15)
+    ball = bik.obstacles.Sphere([0.35, 0.2, 0.7], 0.15)
     starts, ends = robot.random_configurations(12, seed=4).reshape(2, 6, robot.dof)
     for start, end in zip(starts, ends, strict=True):
-        found = bik.solve(robot, robot.fk(end)[:3, 3], start=start)
+        found = bik.solve(robot, robot.fk(end)[:3, 3], start_q=start)
         assert found.success
         np.testing.assert_allclose(robot.fk(found.q)[:3, 3], robot.fk(end)[:3, 3], rtol=0, atol=1e-6)
         tracker = bik.Tracker(robot, start, dt=0.01, limits=limits)
@@ -390,13 +390,12 @@ def test_bent_joints_are_solved_planned_and_tracked(coefficients: str) -> None:
         target[:3, 3] += [0.0, 0.0, -0.02]
         positions = [tracker.step(target).q for _ in range(300)]
         np.testing.assert_array_less(np.abs(np.diff(positions, axis=0)), 1.0 * 0.01 + 1e-12)
-        apart = bik.clearance(robot, [start, end], obstacles=[ball])
-        if min(near.distance for near in apart) > 0.01:
+        if bik.obstacles.clearance(robot, [start, end], [ball]).min() > 0.01:
             plan = bik.plan_point_to_point(robot, start_q=start, end_q=end, limits=limits, obstacles=[ball])
             if plan.success:
-                times = np.linspace(0, plan.duration, 400)
-                at = [bik.clearance(robot, q, obstacles=[ball]).distance for q in plan.trajectory.position(times)]
-                assert min(at) > 1e-3 - 1e-9
+                times = np.linspace(0, plan.trajectory.duration, 400)
+                apart = bik.obstacles.clearance(robot, plan.trajectory.at(times)[0], [ball])
+                assert apart.min() >= plan.clearance - 1e-9
 
 
 def test_a_leader_stays_where_its_follower_is_inside_its_range() -> None:

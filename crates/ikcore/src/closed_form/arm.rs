@@ -63,6 +63,9 @@ impl ClosedFormArm {
         if !(3..=MOST_JOINTS).contains(&joints) {
             return Err(NoClosedForm::Joints(joints));
         }
+        if !chain.curves.is_empty() {
+            return Err(NoClosedForm::Curved);
+        }
         let motions = &chain.motions[..chain.moving];
         for joint in 0..joints {
             let axes = motions.iter().filter(|motion| motion.joint == joint && scale_of(motion) != 0.0).count();
@@ -72,9 +75,6 @@ impl ClosedFormArm {
         }
         if chain.vector.is_some() {
             return Err(NoClosedForm::Floating);
-        }
-        if !chain.curves.is_empty() {
-            return Err(NoClosedForm::Curved);
         }
         if rank < joints.min(6) {
             return Err(NoClosedForm::Rank(rank));
