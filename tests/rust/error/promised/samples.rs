@@ -68,6 +68,15 @@ pub fn hinge(joint: Joint) -> Result<Robot> {
     chain.build()
 }
 
+/// A joint that follows another one by a polynomial.
+pub fn bent() -> Robot {
+    let mut chain = ChainBuilder::new("bent", "base");
+    let joint = chain.add_joint(Joint::new("turn", JointKind::Revolute).with_range(-1.0, 1.0));
+    let polynomial = [0.0, 0.5, 0.2, 0.0, 0.0];
+    chain.push(Element::Curved { axis: Vector3::x(), turns: true, joint, polynomial });
+    chain.build().unwrap()
+}
+
 pub fn leaf() -> Joint {
     Joint::new("hinge", JointKind::Revolute)
 }
