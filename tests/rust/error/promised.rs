@@ -41,7 +41,7 @@ use ikcore::planning::{
 };
 use ikcore::posture::{CircleSwarm, Linkage, Measure, PostureOptions, best_posture};
 use ikcore::rng;
-use ikcore::robot::{BaseLimits, ChainBuilder, Drive, Element, Joint, JointKind, LinkCapsule, MobileBase, Robot};
+use ikcore::robot::{BaseLimits, ChainBuilder, Drive, Joint, JointKind, LinkCapsule, MobileBase, Robot};
 use ikcore::shape::{Cover, Geometry, Shape};
 use ikcore::solver::{
     Algorithm, AnySolver, Apps, Bas, BeeColony, BeetleSwarm, BroydenBas, DerivativeFree, DifferentialEvolution,

@@ -70,11 +70,11 @@ pub fn hinge(joint: Joint) -> Result<Robot> {
 
 /// A joint that follows another one by a polynomial.
 pub fn bent() -> Robot {
-    let mut chain = ChainBuilder::new("bent", "base");
-    let joint = chain.add_joint(Joint::new("turn", JointKind::Revolute).with_range(-1.0, 1.0));
-    let polynomial = [0.0, 0.5, 0.2, 0.0, 0.0];
-    chain.push(Element::Curved { axis: Vector3::x(), turns: true, joint, polynomial });
-    chain.build().unwrap()
+    let xml = "<robot name='bent'><link name='base'/><link name='arm'/><link name='hand'/>\
+        <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/><limit lower='-1' upper='1'/></joint>\
+        <joint name='bend' type='continuous'><parent link='arm'/><child link='hand'/>\
+        <mimic joint='turn' polynomial='0 0.5 0.2'/></joint></robot>";
+    Robot::from_urdf(xml, None, None).unwrap()
 }
 
 pub fn leaf() -> Joint {
