@@ -47,7 +47,9 @@ def vase(at: np.ndarray, count: int, layers: int = 40) -> np.ndarray:
     slope = 0.02 * 2 * np.pi / 0.2 * np.cos(2 * np.pi * height / 0.2)
     out = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
     wall = slope[:, None] * out + np.array([0.0, 0.0, 1.0])
-    return frames(at + radius[:, None] * out + height[:, None] * np.array([0, 0, 1.0]), -wall, np.tile([1.0, 0, 0], (count, 1)))
+    return frames(
+        at + radius[:, None] * out + height[:, None] * np.array([0, 0, 1.0]), -wall, np.tile([1.0, 0, 0], (count, 1))
+    )
 
 
 def cases() -> dict[str, tuple[bik.Robot, np.ndarray, dict[str, Any]]]:
@@ -100,7 +102,9 @@ def main() -> None:
             plan = bik.plan_along_path(robot, poses, **keywords)
             spent.append(time.process_time() - start)
         off = farthest(robot, poses, plan.trajectory)
-        print(f"{name}: {1e3 * np.median(spent):.0f} ms, success {plan.success}, {plan.trajectory.duration:.3f} s, {1e3 * off:.4f} mm off")
+        print(
+            f"{name}: {1e3 * np.median(spent):.0f} ms, success {plan.success}, {plan.trajectory.duration:.3f} s, {1e3 * off:.4f} mm off"
+        )
         if not plan.success:
             print(f"  {plan.message}")
 

@@ -417,8 +417,11 @@ def test_calls_that_cannot_follow_a_bend_name_the_joint() -> None:
     for call, what in [
         (lambda: robot.manipulability_gradient(q), "the gradient of manipulability"),
         (lambda: robot.link_manipulability(q), "the manipulability of links"),
-        (lambda: bik.solve(robot, robot.fk(q), goals=[bik.goals.Manipulability()]), "the goal Manipulability"),
-        (lambda: bik.solve(robot, robot.fk(q), goals=[bik.goals.LeastTorque()]), "the goal LeastTorque"),
+        (
+            lambda: bik.solve(robot, robot.fk(q), goals=[bik.goals.Manipulability()]),
+            "a goal of manipulability or torques",
+        ),
+        (lambda: bik.solve(robot, robot.fk(q), goals=[bik.goals.LeastTorque()]), "a goal of manipulability or torques"),
     ]:
         with pytest.raises(bik.InvalidInputError) as told:
             call()

@@ -103,7 +103,7 @@ impl PyRobot {
     ///     trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
     ///         anyone.
     ///
-    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints are followed: couplings of
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. These equality constraints are followed: couplings of
     /// two joints by a polynomial, those of fixed tendons that are linear, locks, and whatever follows from these, such as a parallelogram.
     /// Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
     /// `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
