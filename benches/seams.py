@@ -2,8 +2,8 @@
 
     python benches/seams.py --repeats 3
 
-Seams of 2,000 poses where two pipes meet, with the torch free to spin, on arms with six and seven joints; walls of a vase of
-5,000 poses and of as many directions. Each motion is judged by forward kinematics at 5,000 instants.
+Seams of 2,000 poses where two pipes meet, with the torch free to spin, on arms with six and seven joints; walls of a
+vase of 5,000 poses and of as many directions. Each motion is judged by forward kinematics at 5,000 instants.
 """
 
 from __future__ import annotations
@@ -102,9 +102,8 @@ def main() -> None:
             plan = bik.plan_along_path(robot, poses, **keywords)
             spent.append(time.process_time() - start)
         off = farthest(robot, poses, plan.trajectory)
-        print(
-            f"{name}: {1e3 * np.median(spent):.0f} ms, success {plan.success}, {plan.trajectory.duration:.3f} s, {1e3 * off:.4f} mm off"
-        )
+        spent_ms = 1e3 * np.median(spent)
+        print(f"{name}: {spent_ms:.0f} ms, {plan.trajectory.duration:.3f} s, {1e3 * off:.4f} mm off, {plan.success}")
         if not plan.success:
             print(f"  {plan.message}")
 
