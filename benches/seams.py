@@ -61,14 +61,14 @@ def cases() -> dict[str, tuple[bik.Robot, np.ndarray, dict[str, Any]]]:
     free = {"task": bik.tasks.Pointing(), "limits": bik.Limits(acceleration=5.0)}
     seam, higher = (pipe_seam(np.array([0.45, 0.0, z]), 2000) for z in (0.0, 0.2))
     solid = bik.obstacles
-    pipes = [
-        solid.Capsule(a=(0.45, -0.3, 0.2), b=(0.45, 0.3, 0.2), radius=0.095),
-        solid.Box(center=(0.75, 0.0, 0.4), size=(0.1, 0.6, 0.3)),
+    around = [
+        solid.Box(center=(0.85, 0.0, 0.45), size=(0.1, 0.6, 0.3)),
+        solid.Box(center=(0.25, 0.35, 0.5), size=(0.06, 0.06, 1.0)),
     ]
     walls = vase(np.array([0.45, 0.0, 0.05]), 5000)
     return {
         "seam, six joints": (ur5e, seam, free),
-        "seam, seven joints, among obstacles": (panda, higher, free | {"obstacles": pipes, "margin": 1e-3}),
+        "seam, seven joints, among obstacles": (panda, higher, free | {"obstacles": around, "self_collision": False}),
         "vase, whole poses": (printer, walls, {"limits": bik.Limits(acceleration=5.0)}),
         "vase, directions": (printer, walls, free),
     }
