@@ -29,8 +29,6 @@ SOLUTION = bik.solve(PANDA, PANDA.fk(READY))
         (PLAN.trajectory, "positions", " (did you mean 'q'?)"),
         (SOLUTION, "x", " (did you mean 'q'?)"),
         (PLAN, "iterations", " (did you mean 'evaluations'?)"),
-        (PANDA, "n_joints", " (did you mean 'dof'?)"),
-        (PANDA, "joint_limits", " (did you mean 'limits'?)"),
     ],
 )
 def test_a_missing_attribute_names_the_one_meant(value: Any, name: str, hint: str) -> None:
