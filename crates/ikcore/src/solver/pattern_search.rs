@@ -8,7 +8,8 @@ use super::evaluator::Evaluator;
 use super::status::Status;
 use crate::objective::{Objective, Point};
 
-/// The first steps, as fractions of the range of a coordinate: once no step leads lower, longer ones are tried.
+/// The first step of each round, as a fraction of the range of a coordinate. A round ends when no step leads lower; the next one begins at
+/// the best point with a longer step, which may lead out of a local minimum.
 const FIRST_STEPS: [f64; 3] = [0.05, 0.2, 0.1];
 
 /// The step at which a coordinate no longer counts as moving, as a fraction of its range.
@@ -29,7 +30,7 @@ pub(crate) struct State {
     value: f64,
     steps: Point,
     finest: Point,
-    /// How often steps were made long.
+    /// Rounds begun.
     rounds: usize,
 }
 

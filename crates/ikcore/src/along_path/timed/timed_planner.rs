@@ -11,10 +11,11 @@ use crate::objective::{Objective, Point};
 use crate::plan::{AlongPathOptions, Cost, Plan, Search, SearchResult};
 use crate::solver::{Monitor, Status, Stop};
 
-/// Evaluations of the search; more shorten the motion by less than 1 %.
+/// Most evaluations of the search: pattern search mostly ends by itself after 100 to 250, another solver uses them all.
 const EVALUATIONS: usize = 2000;
 
-/// A motion whose rough duration is this much longer than another one takes is not timed: rough durations are at most a few per cent too long.
+/// A motion is not timed if its rough duration exceeds that of another one by this factor: it is never much too long, and too short where
+/// torques limit the motion.
 const HOPELESS: f64 = 1.05;
 
 /// Plans along a path, around motions that follow it; `None` where each of these ends on the way.
