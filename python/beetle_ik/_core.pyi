@@ -159,8 +159,8 @@ class Robot:
             trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
                 anyone.
 
-        Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints, linear ones are
-        followed: couplings of joints or fixed tendons, locks, and whatever follows from these, such as a parallelogram.
+        Hinges and slides keep their ranges; MuJoCo has no velocity limits. These equality constraints are followed: couplings of
+        two joints by a polynomial, those of fixed tendons that are linear, locks, and whatever follows from these, such as a parallelogram.
         Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
         `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
         ellipsoids, planes and height fields, which are listed in `unread_collision_shapes`.
@@ -169,7 +169,7 @@ class Robot:
             BeetleIkError: MuJoCo is not installed.
             UnknownNameError: no body or site of that name; the message lists them.
             InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or an equality (connect,
-                weld, tendon, polynomial coupling) that joints of the chain do not keep.
+                weld, tendon) that joints of the chain do not keep.
         """
     @staticmethod
     def from_description(
@@ -4031,7 +4031,8 @@ def plan_along_path(
         breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
             as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
             go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
-        solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
+        solver: solver of the search of "timed", for an arm with redundancy; None: pattern search from the motion
+            found first. `TPBSO` has a
             solver of its own.
         stop: budgets; None: the method's own.
         seed: seed of the random draws; the same seed gives the same bits.

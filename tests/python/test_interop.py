@@ -417,9 +417,10 @@ def test_mujoco_models_keep_their_kinematics(mujoco: object, tip: str | None, tm
         ("<body name='b'><geom size='1'/><freejoint name='f'/></body>", "", {"tip": "b"},
          "MuJoCo model: joint 'f' is floating, and a chain takes only revolute, continuous, prismatic, fixed and mimic "
          "joints: take base and tip on one side of it, such as base 'b'"),
-        ("", "<equality><joint joint1='turn' joint2='elbow' polycoef='0 1 2 0 0'/></equality>", {},
+        ("", "<equality><joint joint1='turn' joint2='elbow' polycoef='0 1 2 0 0'/>"
+         "<joint joint1='turn' joint2='elbow' polycoef='0 1 3 0 0'/></equality>", {},
          "MuJoCo model: the joint equality of 'turn' and 'elbow' couples the joints turn, elbow, which is not followed "
-         "(linear couplings and locks are, where they agree): choose base and tip on one side of it, or set "
+         "(locks and couplings of two joints are, where they agree): choose base and tip on one side of it, or set "
          "active='false' if the motion of the tip does not depend on it"),
         ("", "", {"tip": "hand"},
          "no body or site 'hand' in the MuJoCo model; bodies: world, upper, lower; sites: tool"),

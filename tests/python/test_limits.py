@@ -116,6 +116,17 @@ def test_zero_locks_a_joint() -> None:
     assert result.success, result.message
 
 
+@pytest.mark.parametrize("joint", range(3))
+def test_equal_position_limits_lock_a_joint_of_a_plan(joint: int) -> None:
+    end = np.array(START) + 0.1
+    end[joint] = START[joint]
+    bound = np.where(np.arange(5) == joint, START, np.inf)
+    limits = bik.Limits(velocity=1.0, acceleration=3.0, lower=np.where(np.isinf(bound), -3.0, bound), upper=bound)
+    plan = bik.plan_point_to_point(ROBOT, start_q=START, end_q=end, limits=limits)
+    assert plan.success, plan.message
+    np.testing.assert_array_equal(plan.trajectory.q[:, joint], START[joint])
+
+
 def test_limits_left_out_are_the_robots() -> None:
     robot = ROBOT.with_limits(lower=-1.0, upper=1.0, velocity=0.7)
     result = bik.track(robot, CIRCLE, START, dt=DT, limits=bik.Limits(upper=2.0))

@@ -64,10 +64,12 @@ def test_colliding_geoms_become_capsules() -> None:
     assert radius == 0.02
 
 
-def test_joints_that_a_model_bends_are_refused_on_the_chain_alone() -> None:
+def test_joints_that_contradict_each_other_are_refused_on_the_chain_alone() -> None:
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    bent = MJCF.replace("0.002 0.5 0 0 0", "0 1 1 0 0")
-    assert bik.Robot.from_mjcf(bent, tip="tool").dof == 3
+    second = '<joint joint1="other" joint2="grip" polycoef="0 1 1 0 0"/> </equality>'
+    bent = MJCF.replace("</equality>", second)
+    with pytest.warns(UserWarning, match="the joint equality of 'other' and 'grip' is open by 0.002"):
+        assert bik.Robot.from_mjcf(bent, tip="tool").dof == 3
     with pytest.raises(bik.InvalidInputError) as told:
         bik.Robot.from_mjcf(bent, tip="right")
     assert str(told.value).startswith(

@@ -243,6 +243,13 @@ def test_plans_along_a_path_begin_at_the_reading(beyond: float) -> None:
     assert np.all(q[:, 1] >= start[1] - 1e-9)
 
 
+def test_a_program_of_moves_takes_rounding_alone() -> None:
+    moves = [bik.moves.Joints(INSIDE)]
+    assert bik.plan_moves(PANDA, moves, start_q=below(1e-7), limits=LIMITS).success
+    with pytest.raises(Limit, match=r"^start_q: joint 'panda_joint2' at -1\.77\d* is outside its limits"):
+        bik.plan_moves(PANDA, moves, start_q=below(0.01), limits=LIMITS)
+
+
 def test_a_retreat_begins_at_the_reading() -> None:
     start = below(0.05)
     plan = bik.plan_point_to_point(PANDA, start_q=start, end_q=INSIDE, retreat=0.05, limits=LIMITS)

@@ -12,6 +12,7 @@ from viewer_turns import until
 
 import beetle_ik as bik
 from beetle_ik.viewing.incoming import Incoming
+from beetle_ik.viewing.playback import _facts
 from beetle_ik.viewing.sizes import grips, resized
 
 PANDA = bik.Robot.named("panda").with_capsules(radius=0.06)
@@ -254,3 +255,10 @@ def test_a_slice_of_a_map_is_shown_where_it_is_asked_for(reached: bik.Reachabili
         assert len(viewer.server.scene.get_handle_by_name("/map").points) == int((reached.index > 0).sum())
         part._hide()
         assert viewer.server.scene.get_handle_by_name("/map") is None
+
+
+def test_the_facts_of_a_motion_are_told() -> None:
+    points = np.array([[[0.0, 0.0, 0.0]], [[0.3, 0.0, 0.0]], [[0.3, 0.4, 0.0]]])
+    told = [_facts(1.5, points, clearance) for clearance in (0.0123, np.nan, np.inf)]
+    assert "1.50 s, the tip moves 0.700 m, clearance 12.3 mm at least<" in told[0]
+    assert all("the tip moves 0.700 m<" in each for each in told[1:])

@@ -108,6 +108,7 @@ mod timing {
     mod tolerance;
 }
 mod moves {
+    mod at_limits;
     mod programs;
 }
 mod tpbso {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .. import Trajectory
+from .. import InvalidInputError, Trajectory
 from ..files.whole import whole_file, whole_folder
 from .show import to_json
 
@@ -32,6 +32,27 @@ def write_files(
     if can_draw():
         for name, figure in figures.items():
             figure().savefig(folder / name)
+
+
+def require_picture(option: str, file: Path) -> None:
+    """Checks that a picture can be drawn and written.
+
+    Raises:
+        InvalidInputError: matplotlib is not installed, or writes no picture of that ending.
+    """
+    if not can_draw():
+        raise InvalidInputError(f"{option} needs matplotlib: pip install 'beetle-ik[plot]'")
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    endings = sorted(FigureCanvasBase.filetypes)
+    if file.suffix[1:].lower() not in endings:
+        raise InvalidInputError(f"{option}: '{file}' must end in .png or another of {', '.join(endings)}")
+
+
+def write_picture(file: Path, figure: "Figure") -> None:
+    """Writes a figure, whole or not at all; the ending of the name says in which form."""
+    with whole_file(file) as stream:
+        figure.savefig(stream, format=file.suffix[1:].lower())
 
 
 def print_files(out: Path | None) -> None:

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from .. import InvalidInputError, ReachabilityMap, Scene, reachability
-from .files import can_draw
+from .. import ReachabilityMap, Scene, reachability
+from .files import require_picture, write_picture
 from .options import AsJson, BaseLink, LinkRadius, Margin, RobotName, SceneFile, TipLink, Trusted, UrdfFile, load_robot
 from .show import print_json, print_pairs
 
@@ -34,8 +34,8 @@ def reach(
     as_json: AsJson = False,
 ) -> None:
     """Reachability map: the share of orientations that an arm reaches in each voxel of space."""
-    if picture is not None and not can_draw():
-        raise InvalidInputError("--picture needs matplotlib: pip install 'beetle-ik[plot]'")
+    if picture is not None:
+        require_picture("--picture", picture)
     arm = load_robot(robot, urdf, base, tip, link_radius, trusted=trusted)
     found = reachability(
         arm,
@@ -50,7 +50,7 @@ def reach(
     if out is not None:
         found.to_npz(out)
     if picture is not None:
-        found.plot().savefig(picture)
+        write_picture(picture, found.plot())
     _show(found, as_json)
 
 

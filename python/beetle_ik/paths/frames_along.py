@@ -94,7 +94,7 @@ def _turned_gradually(directions: Array, along: Array, jumps: Indices, width: fl
 
 
 def _tangents(tips: Array, points: Array, *, closed: bool) -> Array:
-    """Returns directions (m, 3) of the line by differences across each tip; of the points where tips stand still."""
+    """Returns the tangents (m, 3) of the line by central differences of the tips; of the points where they coincide."""
     around = [
         np.concatenate([p[-2:-1], p, p[1:2]]) if closed else np.concatenate([p[:1], p, p[-1:]]) for p in (tips, points)
     ]

@@ -66,7 +66,8 @@ def _read(mujoco: Any, model: str | os.PathLike[str], trusted: bool) -> Any:
     try:
         return mujoco.MjModel.from_xml_string(text) if "<" in text else mujoco.MjModel.from_xml_path(str(Path(text)))
     except ValueError as error:
-        raise InvalidInputError(f"MuJoCo cannot read the model: {error!s:.200}") from error
+        file = "" if "<" in text else f"{text:.200}: "
+        raise InvalidInputError(f"MuJoCo cannot read the model: {file}{error!s:.200}") from error
 
 
 class _Reader:
@@ -107,8 +108,8 @@ class _Reader:
             if chain & found.joints:
                 coupled = listed([self.joints[joint] for joint in sorted(found.joints)])
                 raise InvalidInputError(
-                    f"MuJoCo model: {found.described} couples the joints {coupled}, which is not followed (linear "
-                    "couplings and locks are, where they agree): choose base and tip on one side of it, or set "
+                    f"MuJoCo model: {found.described} couples the joints {coupled}, which is not followed (locks and "
+                    "couplings of two joints are, where they agree): choose base and tip on one side of it, or set "
                     "active='false' if the motion of the tip does not depend on it"
                 )
             warnings.warn(
@@ -191,7 +192,9 @@ class _Reader:
     def _kind(self, joint: int) -> str:
         kind = self.mujoco.mjtJoint(self.model.jnt_type[joint])
         if kind.name == "mjJNT_HINGE":
-            return "revolute" if self.model.jnt_limited[joint] else "continuous"
+            if joint in self.equalities.curves:
+                return "continuous"
+            return "revolute" if self.equalities.range(joint) else "continuous"
         return {"mjJNT_SLIDE": "prismatic", "mjJNT_BALL": "spherical"}.get(kind.name, "floating")
 
     def _attributes(self, joint: int) -> list[str]:
@@ -201,9 +204,11 @@ class _Reader:
             return []
         inner = [f"<axis xyz='{exact(model.jnt_axis[joint])}'/>"]
         effort = self._effort(joint)
-        if model.jnt_limited[joint] or self._kind(joint) == "prismatic":
-            lower, upper = model.jnt_range[joint] if model.jnt_limited[joint] else (-np.inf, np.inf)
-            inner.append(f"<limit lower='{float(lower)!r}' upper='{float(upper)!r}' effort='{effort!r}'/>")
+        # The range of a follower by a polynomial is that of its leader.
+        span = None if joint in self.equalities.curves else self.equalities.range(joint)
+        if span or self._kind(joint) == "prismatic":
+            lower, upper = span or (-np.inf, np.inf)
+            inner.append(f"<limit lower='{lower!r}' upper='{upper!r}' effort='{effort!r}'/>")
         elif np.isfinite(effort):
             inner.append(f"<limit effort='{effort!r}'/>")
         dof = model.jnt_dofadr[joint]
@@ -217,6 +222,10 @@ class _Reader:
         if master is not None:
             name = quoteattr(self.joints[master])
             inner.append(f"<mimic joint={name} multiplier='{scale!r}' offset='{offset!r}'/>")
+        if joint in self.equalities.curves:
+            leader, polynomial = self.equalities.curves[joint]
+            name = quoteattr(self.joints[leader])
+            inner.append(f"<mimic joint={name} polynomial='{exact(polynomial.coef)}'/>")
         return inner
 
     def _effort(self, joint: int) -> float:

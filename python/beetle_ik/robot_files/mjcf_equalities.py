@@ -1,16 +1,20 @@
-"""Equality constraints of a MuJoCo model: linear ones are followed, and MuJoCo says which of the others are kept."""
+"""Equality constraints of a MuJoCo model: couplings are followed, and MuJoCo says which of the others are kept."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
-from .._core import Robot
+from .._core import InvalidInputError, Robot
 
 _CLOSED = 1e-4
 """Residual (m, rad) up to which an equality counts as kept: the rounding of numbers in files."""
 _CONFIGURATIONS = 8
+_ROUNDING = 1e-9
+"""Excess over a range (rad, m) that counts as rounding, and relative imaginary part of a double root."""
 
 
 class Drive(NamedTuple):
@@ -19,6 +23,13 @@ class Drive(NamedTuple):
     master: int | None
     scale: float
     offset: float
+
+
+class Curve(NamedTuple):
+    """Position of a joint: a polynomial of the position of another joint, not linear."""
+
+    leader: int
+    polynomial: Polynomial
 
 
 @dataclass(frozen=True)
@@ -31,15 +42,18 @@ class Open:
 
 
 class Equalities:
-    """The active equality constraints of a model, and the joints that linear ones drive."""
+    """The active equality constraints of a model, and the joints that couplings drive."""
 
     def __init__(self, mujoco: Any, model: Any, joints: Sequence[str]) -> None:
-        """Solves the linear equalities; `joints` are the names of all joints."""
+        """Solves the linear equalities, then the polynomial ones; `joints` are the names of all joints."""
         self.mujoco, self.model, self.joints = mujoco, model, joints
         off = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         self.active = [] if model.opt.disableflags & off else [int(i) for i in np.flatnonzero(model.eq_active0)]
         self.drives: dict[int, Drive] = {}
+        self.curves: dict[int, Curve] = {}
         self._solve([equation for equality in self.active for equation in self._linear(equality)])
+        for equality in self.active:
+            self._follow_curve(equality)
 
     def lock(self, joint: int) -> float | None:
         """Returns the position (rad, m) at which a joint is locked; None for a joint that moves."""
@@ -48,8 +62,66 @@ class Equalities:
 
     def leader(self, joint: int) -> str | None:
         """Returns the name of the independent joint that moves a joint; None for a locked one."""
+        first = self._first(joint)
+        return None if first is None else self.joints[first]
+
+    def _first(self, joint: int) -> int | None:
+        """Returns the independent joint that moves a joint; None for a locked one."""
+        if joint in self.curves:
+            return self._first(self.curves[joint].leader)
         master = self.drives.get(joint, Drive(joint, 1.0, 0.0)).master
-        return None if master is None else self.joints[master]
+        return master if master is None or master == joint else self._first(master)
+
+    def position(self, joint: int, first: float) -> float:
+        """Returns the position of a joint for that of the independent joint that moves it."""
+        if joint in self.curves:
+            leader, polynomial = self.curves[joint]
+            return float(polynomial(self.position(leader, first)))
+        master, scale, offset = self.drives.get(joint, Drive(joint, 1.0, 0.0))
+        if master is None:
+            return offset
+        return first if master == joint else scale * self.position(master, first) + offset
+
+    def range(self, joint: int) -> tuple[float, float] | None:
+        """Returns the range of a joint (rad, m); None for one without limits.
+
+        The followers of a joint by a polynomial stay within their ranges: of several stretches in which they do, it is
+        that with the reference position of the joint, or the nearest.
+
+        Raises:
+            InvalidInputError: a follower stays within its range nowhere.
+        """
+        model = self.model
+        followers = [follower for follower, curve in self.curves.items() if curve.leader == joint]
+        lower, upper = map(float, model.jnt_range[joint]) if model.jnt_limited[joint] else (-np.inf, np.inf)
+        for follower in followers:
+            if model.jnt_limited[follower]:
+                within = self._within(follower, lower, upper)
+                if within is None:
+                    raise InvalidInputError(
+                        f"MuJoCo model: joint '{self.joints[follower]}' follows '{self.joints[joint]}' by a "
+                        f"polynomial, and leaves its range wherever '{self.joints[joint]}' is inside its own"
+                    )
+                lower, upper = within
+        return (lower, upper) if np.isfinite(lower) or np.isfinite(upper) else None
+
+    def _within(self, follower: int, lower: float, upper: float) -> tuple[float, float] | None:
+        """Returns the stretch between two positions of its leader in which a follower stays within its range."""
+        leader, polynomial = self.curves[follower]
+        rest = float(np.clip(self.model.qpos0[self.model.jnt_qposadr[leader]], lower, upper))
+        limits = self.model.jnt_range[follower]
+        crossings = np.concatenate([(polynomial - limit).roots() for limit in limits])
+        real = np.real(crossings[np.abs(np.imag(crossings)) < _ROUNDING * (1.0 + np.abs(crossings))])
+        ends = [lower, *sorted(float(at) for at in real if lower < at < upper), upper]
+        stretches: list[tuple[float, float]] = []
+        for start, end in pairwise(ends):
+            middle = start + 1.0 if end == np.inf else end - 1.0 if start == -np.inf else 0.5 * (start + end)
+            if not limits[0] - _ROUNDING <= polynomial(middle) <= limits[1] + _ROUNDING:
+                continue
+            if stretches and stretches[-1][1] == start:
+                start = stretches.pop()[0]
+            stretches.append((start, end))
+        return min(stretches, key=lambda ends: max(ends[0] - rest, rest - ends[1]), default=None)
 
     def open_in(self, robot: Robot) -> Iterator[Open]:
         """Yields the equalities that configurations of the robot do not keep."""
@@ -89,11 +161,10 @@ class Equalities:
         known = dict(zip(robot.joint_names, q, strict=True)) | robot.held_joints
         positions = np.array(self.model.qpos0)
         for joint in range(len(self.joints)):
-            master, scale, offset = self.drives.get(joint, Drive(joint, 1.0, 0.0))
-            if master is None:
-                positions[self.model.jnt_qposadr[joint]] = offset
-            elif (at := known.get(self.joints[master])) is not None:
-                positions[self.model.jnt_qposadr[joint]] = scale * at + offset
+            first = self._first(joint)
+            at = 0.0 if first is None else known.get(self.joints[first])
+            if at is not None:
+                positions[self.model.jnt_qposadr[joint]] = self.position(joint, at)
         return positions
 
     def _is_free(self, equality: int, joints: set[int]) -> bool:
@@ -171,6 +242,30 @@ class Equalities:
             for joint, factor in side.items():
                 factors[joint] = factors.get(joint, 0.0) + sign * factor
         yield factors, total
+
+    def _follow_curve(self, equality: int) -> None:
+        """Lets a joint follow another one by the polynomial of an equality, unless something else moves it already."""
+        model, ends = self.model, self._ends(equality)
+        coefficients = np.array(model.eq_data[equality][:5])
+        if self._kind(equality) != "joint" or len(ends) != 2 or not coefficients[2:].any():
+            return
+        follower, leader = ends
+        if follower in self.drives or follower in self.curves or self._first(leader) == follower:
+            return
+        own, other = (float(model.qpos0[model.jnt_qposadr[end]]) for end in ends)
+        polynomial = Polynomial(coefficients)(Polynomial([-other, 1.0])) + own
+        if self._first(leader) is None:
+            self.drives[follower] = Drive(None, 1.0, float(polynomial(self.position(leader, 0.0))))
+        elif not self._is_curved(leader) and follower not in {curve.leader for curve in self.curves.values()}:
+            self.curves[follower] = Curve(leader, polynomial)
+
+    def _is_curved(self, joint: int | None) -> bool:
+        """Whether a joint follows another one by a polynomial, itself or through others."""
+        while joint is not None and joint not in self.curves:
+            before, joint = joint, self.drives.get(joint, Drive(joint, 1.0, 0.0)).master
+            if before == joint:
+                return False
+        return joint is not None
 
     def _weld(self, equality: int) -> Iterator[tuple[dict[int, float], float]]:
         """Yields the lock of a weld across one hinge or slide."""

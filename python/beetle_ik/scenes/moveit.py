@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import obstacles
 from .._core import BeetleIkError, InvalidInputError, Obstacle, pose
 from ..files.whole import content_of
-from ..installed.needs import library
 from .attached import Attached, carried
+from .bounded_yaml import load_yaml
 from .frames import frame_of, placed_frames, rigid
 from .octomap import octomap_message
 from .rviz import is_rviz_text, rviz_obstacles
@@ -40,12 +40,8 @@ def read_moveit(file: str | os.PathLike[str], frame: ArrayLike | None) -> tuple[
 
 def _planning_scene(where: str, text: str, place: NDArray[np.float64]) -> tuple[list[Obstacle], list[Attached]]:
     """Reads a planning scene in YAML."""
-    yaml = library("yaml", "pyyaml", "reading a MoveIt planning scene")
-    try:
-        # "ros2 topic echo" ends each message with a line "---".
-        scene = yaml.safe_load(text.rstrip().removesuffix("---"))
-    except (ValueError, RecursionError, yaml.YAMLError) as error:  # also for dates and integers that Python cannot hold
-        raise InvalidInputError(f"{where}: not YAML: {error}") from error
+    # "ros2 topic echo" ends each message with a line "---".
+    scene = load_yaml(where, text.rstrip().removesuffix("---"))
     world = scene.get("world") if isinstance(scene, dict) else None
     if not isinstance(world, dict):
         raise InvalidInputError(

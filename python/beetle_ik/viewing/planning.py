@@ -47,7 +47,7 @@ class Planning:
         )  # fmt: skip
         if not plan.success:
             raise BeetleIkError(plan.message)
-        self._playback.show(plan.trajectory, repeat=False)
+        self._playback.show(plan.trajectory, repeat=False, clearance=plan.clearance)
         self._made = (plan.trajectory, start, targets)
 
     @property

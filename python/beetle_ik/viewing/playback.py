@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -41,14 +42,18 @@ class Playback:
             self._bar = gui.add_slider("time [s]", min=0.0, max=1.0, step=_STEP, initial_value=0.0)
             self._button = gui.add_button("Play")
             self._repeat = gui.add_checkbox("repeat", initial_value=True)
+            self._facts = gui.add_html("")
         page.on_input(self._bar, lambda: self._jump(self._bar.value))
         page.on_input(self._button, lambda: self._play(not self._playing))
         self._time = 0.0
         self._left = (page.arm.q, page.arm.targets)
         """Configuration and targets that playback left; other values mean that someone has taken over."""
 
-    def show(self, motion: Trajectory, *, repeat: bool = True) -> None:
-        """Shows a trajectory in place of the previous one, and plays it once or repeatedly."""
+    def show(self, motion: Trajectory, *, repeat: bool = True, clearance: float = math.nan) -> None:
+        """Shows a trajectory in place of the previous one, and plays it once or repeatedly.
+
+        `clearance` is the smallest distance (m) on the way; NaN if it is not known.
+        """
         set_value(self._repeat, repeat)
         for handle in self._drawn:
             handle.remove()
@@ -57,7 +62,9 @@ class Playback:
         self._folder.visible = True
         times = np.linspace(0.0, motion.duration, _SAMPLES)
         q, qd, _ = motion.at(times)
-        self._drawn = [self._trace(q), self._plot(times, qd)]
+        points = self._page.arm.robot.fk(q).reshape(len(q), -1, 4, 4)[..., :3, 3]
+        self._facts.content = _facts(motion.duration, points, clearance)
+        self._drawn = [self._trace(points), self._plot(times, qd)]
         self._play(True)
 
     def advance(self, elapsed: float) -> bool:
@@ -124,9 +131,8 @@ class Playback:
             arm.put(*self._motion.at(self._time))
             self._left = (arm.q, arm.targets)
 
-    def _trace(self, q: NDArray[np.float64]) -> viser.LineSegmentsHandle:
-        """Draws the paths of the tips."""
-        points = self._page.arm.robot.fk(q).reshape(len(q), -1, 4, 4)[..., :3, 3]
+    def _trace(self, points: NDArray[np.float64]) -> viser.LineSegmentsHandle:
+        """Draws the paths of the tips, points (k, tips, 3)."""
         segments = np.stack((points[:-1], points[1:]), axis=2).reshape(-1, 2, 3)
         return self._page.server.scene.add_line_segments(
             "/trace", segments, rgb(BLUE), thickness=_TRACE, thickness_units="screen"
@@ -142,3 +148,12 @@ class Playback:
                 (times, *np.ascontiguousarray(qd.T)), (uplot.Series(label="t [s]"), *series),
                 title="joint velocities [rad/s, m/s]", scales={"x": uplot.Scale(time=False)}, aspect=_ASPECT,
             )  # fmt: skip
+
+
+def _facts(duration: float, points: NDArray[np.float64], clearance: float) -> str:
+    """Returns duration, longest way of a tip (points (k, tips, 3)) and clearance of a motion, as HTML."""
+    length = np.linalg.norm(np.diff(points, axis=0), axis=-1).sum(axis=0).max()
+    facts = [f"{duration:.2f} s", f"the tip moves {length:.3f} m"]
+    if math.isfinite(clearance):
+        facts.append(f"clearance {1e3 * clearance:.1f} mm at least")
+    return f"<p data-beetle-ik='motion' style='padding:0 1em;font-size:0.85em'>{', '.join(facts)}</p>"

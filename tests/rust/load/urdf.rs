@@ -149,6 +149,105 @@ fn mimic_joints_follow_through_chains_of_mimics() {
 }
 
 #[test]
+fn mimic_joints_follow_by_polynomials() {
+    let slide = "<axis xyz='1 0 0'/><limit lower='-1' upper='1' velocity='1'/>";
+    let free = "<axis xyz='1 0 0'/><limit lower='-20' upper='20'/>";
+    let mimic = |rest: &str| format!("{free}<mimic {rest}/>");
+    let [line, bend, along] = [
+        mimic("joint='first' multiplier='-2' offset='0.1'"),
+        mimic("joint='line' polynomial='0.2 0.5 -0.3 0.1 0.05' multiplier='2' offset='0.4'"),
+        mimic("joint='bend' multiplier='3' offset='-0.1'"),
+    ];
+    let links = ["l0", "l1", "l2", "l3", "beside"];
+    let joints = [
+        ("along", "prismatic", "l0", "l1", along.as_str()),
+        ("first", "prismatic", "l1", "l2", slide),
+        ("bend", "prismatic", "l2", "l3", &bend),
+        ("line", "prismatic", "l2", "beside", &line),
+    ];
+    let xml = robot(&links, &joints);
+    let arm = Robot::from_urdf(&xml, None, Some("l3")).unwrap();
+    let place = |q: f64| {
+        let line = 0.1 - 2.0 * q;
+        let polynomial = 0.2 + 0.5 * line - 0.3 * line.powi(2) + 0.1 * line.powi(3) + 0.05 * line.powi(4);
+        let bend = 2.0 * polynomial + 0.4;
+        (q + bend + (3.0 * bend - 0.1), line)
+    };
+    assert_eq!(arm.dof(), 1);
+    for q in [-1.0, -0.4, 0.0, 0.7, 1.0] {
+        let (x, line) = place(q);
+        let reached = arm.fk(&[q]).unwrap();
+        assert!((reached.translation.x - x).abs() < 1e-13, "{q}");
+        let beside =
+            arm.link_fk("beside", &[q]).unwrap().translation.x - arm.link_fk("l2", &[q]).unwrap().translation.x;
+        assert!((beside - line).abs() < 1e-14);
+        let back = Robot::from_urdf(&xml, Some("l3"), Some("l0")).unwrap();
+        assert_same(&back.fk(&[q]).unwrap(), &reached.inverse(), 1e-13);
+    }
+    // The polynomial holds within the limits of its leader, whatever these are, and 2 cm beyond; then come its tangents.
+    let wide = arm.with_limits(|_, joint| joint.upper = 2.0).unwrap();
+    let [at, slope] = [place(1.02).0, (place(1.02 + 1e-6).0 - place(1.02 - 1e-6).0) / 2e-6];
+    let [here, there] = [&arm, &wide].map(|arm| arm.fk(&[1.5]).unwrap().translation.x);
+    assert!((here - (at + 0.48 * slope)).abs() < 1e-8 && (there - place(1.5).0).abs() < 1e-12, "{here} {there}");
+}
+
+#[test]
+fn a_follower_by_a_polynomial_limits_its_leader() {
+    let range = |rest: &str| format!("<axis xyz='1 0 0'/><limit {rest}/>");
+    let loaded = |leader: &str, follower: &str| {
+        let follower = format!("{}<mimic joint='lead' polynomial='0 0 0.5'/>", range(follower));
+        let leader = range(leader);
+        let joints = [("lead", "prismatic", "l0", "l1", leader.as_str()), ("bend", "prismatic", "l1", "l2", &follower)];
+        Robot::from_urdf(&robot(&["l0", "l1", "l2"], &joints), None, None)
+    };
+    let leader = "lower='-1' upper='1' velocity='3'";
+    // Slope 1.02 at 2 cm beyond the limits.
+    let speed = loaded(leader, "lower='0' upper='1' velocity='2.04'").unwrap().joints()[0].velocity;
+    assert!((speed - 2.0).abs() < 1e-6, "{speed}");
+    for (leader, follower, message) in [
+        (
+            leader,
+            "lower='0' upper='0.4'",
+            "URDF line 6: mimic joint 'bend' moves from 0 to 0.5 while 'lead', which it follows by a polynomial, is inside its limits, \
+             and leaves its own, [0, 0.4]: narrow the limits of 'lead'",
+        ),
+        (
+            leader,
+            "lower='0' upper='1' acceleration='2'",
+            "URDF line 6: mimic joint 'bend' follows 'lead' by a polynomial: limits of its acceleration and jerk are not followed",
+        ),
+        (
+            "velocity='3'",
+            "velocity='3'",
+            "robot 'r': a joint follows joint 'lead' by a polynomial: give 'lead' position limits",
+        ),
+    ] {
+        assert_eq!(loaded(leader, follower).unwrap_err().to_string(), message);
+    }
+}
+
+#[test]
+fn a_polynomial_of_a_polynomial_is_refused_by_name() {
+    let turn = "<axis xyz='0 0 1'/><limit lower='-1' upper='1'/>";
+    let bent = |leader: &str| format!("<axis xyz='0 0 1'/><mimic joint='{leader}' polynomial='0 1 1'/>");
+    let (inner, outer) = (bent("lead"), bent("inner"));
+    // On the chain, and beside it.
+    for (ends, tip) in [(["l2", "l3"], "l3"), (["l1", "l3"], "l2")] {
+        let joints = [
+            ("lead", "revolute", "l0", "l1", turn),
+            ("inner", "continuous", "l1", "l2", inner.as_str()),
+            ("outer", "continuous", ends[0], ends[1], &outer),
+        ];
+        let told = Robot::from_urdf(&robot(&["l0", "l1", "l2", "l3"], &joints), Some("l0"), Some(tip));
+        assert_eq!(
+            told.unwrap_err().to_string(),
+            "URDF line 8: joint 'outer' follows joint 'inner' by a polynomial, which follows joint 'lead' by a polynomial: at most one of \
+             both is followed"
+        );
+    }
+}
+
+#[test]
 fn links_of_absurd_length_are_refused() {
     let said = error_after("0.1 0.2 0.3", "0 1e160 0");
     assert!(said.ends_with("its links are 1e160 m long together, more than 1e150 m"), "{said}");
@@ -327,6 +426,11 @@ fn impossible_joints_are_named() {
             "<axis xyz=\"0 0 -2\"/>",
             "<mimic joint=\"a\" multiplier=\"inf\"/>",
             "line 14: mimic multiplier of joint 'b' must be finite, got 'inf'",
+        ),
+        (
+            "<axis xyz=\"0 0 -2\"/>",
+            "<mimic joint=\"a\" polynomial=\"0 1 2 3 4 5\"/>",
+            "line 14: mimic polynomial of joint 'b' must be one to five finite numbers, got '0 1 2 3 4 5'",
         ),
         ("type=\"revolute\"", "", "line 5: joint 'a' has no attribute type=\"...\""),
         ("<parent link=\"base\"/>", "", "line 5: joint 'a' has no <parent link=\"...\"/>"),

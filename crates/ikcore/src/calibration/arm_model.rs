@@ -160,6 +160,8 @@ impl ArmModel {
                     self.stages.push(Stage::Moving { axis, turns, joint, scale, offset });
                     self.elements.push(element.clone());
                 }
+                // `calibrate` takes no robot that has one.
+                Element::Curved { .. } => self.elements.push(element.clone()),
                 Element::RotationVector { joint } => {
                     self.stages.push(Stage::RotationVector { joint: *joint });
                     self.elements.push(element.clone());

@@ -54,9 +54,10 @@ const SEED: u64 = 46;
 /// # Errors
 /// [`Error::InvalidMeasurement`] for measurements that cannot be right: too few, all alike, in millimetres or degrees, from a mirrored
 /// frame; [`Error::WrongLength`], [`Error::NotFinite`] and [`Error::OutOfRange`] for impossible numbers; [`Error::SeveralTips`];
-/// [`Error::Contradiction`] if nothing is to be fitted.
+/// [`Error::Contradiction`] if nothing is to be fitted, and for joints that follow others by polynomials.
 pub fn calibrate(robot: &Robot, qs: &[f64], measured: &Measured, options: &CalibrationOptions) -> Result<Calibration> {
     robot.require_one_tip("calibration")?;
+    robot.require_linear_couplings("calibration")?;
     let parts = FittedParts::new(&options.fit)?;
     measured.check(robot, qs)?;
     options.suggestion.check(robot)?;

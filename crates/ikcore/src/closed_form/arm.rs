@@ -35,6 +35,8 @@ pub(crate) enum NoClosedForm {
     Sliding,
     /// The base floats.
     Floating,
+    /// A joint follows another one by a polynomial.
+    Curved,
 }
 
 /// Closed form of a chain of three to seven joints.
@@ -60,6 +62,9 @@ impl ClosedFormArm {
         let joints = lower.len();
         if !(3..=MOST_JOINTS).contains(&joints) {
             return Err(NoClosedForm::Joints(joints));
+        }
+        if !chain.curves.is_empty() {
+            return Err(NoClosedForm::Curved);
         }
         let motions = &chain.motions[..chain.moving];
         for joint in 0..joints {

@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 
 use super::joint_span::JointSpan;
 use super::largest_factor::{IntervalFactor, TIGHT, is_at_most, largest_factor};
+use super::tip_jet::why_no_jets;
 use super::torque_bend::{BendScratch, HOLD_AND_SQUARE, Rest, TorqueBend};
 use crate::dynamics::{DynamicState, Dynamics, DynamicsScratch};
 use crate::error::{Error, Result};
@@ -126,18 +127,15 @@ impl JointTorques {
     /// The limits (n,) of `robot`; `None` without finite ones. `method` names the call in errors.
     ///
     /// # Errors
-    /// Those of [`Robot::dynamics`]; [`Error::UnsupportedLimit`] for a base that floats.
+    /// Those of [`Robot::dynamics`]; [`Error::UnsupportedLimit`] for a base that floats, and for a joint that follows another by a
+    /// polynomial.
     pub fn new(robot: &Robot, limits: &[f64], method: impl Into<Message>) -> Result<Option<Self>> {
         if !limits.iter().any(|limit| limit.is_finite()) {
             return Ok(None);
         }
-        if robot.moving_elements().any(|(.., motion)| motion.of_vector) {
-            let remedy = "a base that floats turns by a rotation vector; leave out the torque limits";
-            return Err(Error::UnsupportedLimit {
-                field: "torque".into(),
-                method: method.into(),
-                remedy: remedy.into(),
-            });
+        if robot.moving_elements().any(|(.., motion)| !motion.is_linear()) {
+            let remedy = format!("{}leave out the torque limits", why_no_jets(robot)).into();
+            return Err(Error::UnsupportedLimit { field: "torque".into(), method: method.into(), remedy });
         }
         let dynamics = Arc::new(robot.dynamics()?.clone());
         let bend = Arc::new(TorqueBend::new(robot, &dynamics));

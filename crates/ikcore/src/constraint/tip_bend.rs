@@ -61,7 +61,9 @@ impl TipBend {
         let (turn, turn_off_line) = (turned(change), turned(off_line));
         // Along a straight line in joint space a unit vector v changes by v' = w x v, with |w| <= turn, and |w'| <= turn^2 / 2, so
         // that |v''| <= turn^2 for directions that turn about one axis alone, and no more in general: see `sagitta_along`.
-        let direction = turn * turn / 8.0 + turn_off_line;
+        // Polynomial couplings add their second derivatives to w'.
+        let bent: f64 = carriers.iter().map(|(_, motion)| motion.bent(change)[0]).sum();
+        let direction = (turn * turn + bent) / 8.0 + turn_off_line;
         let point = sagitta_along(carriers.iter().copied(), frames, origin, [change, off_line]);
         let is_straight = off_line.iter().all(|off| *off == 0.0);
         Self { point, direction, turn, turn_off_line, is_straight }

@@ -179,13 +179,21 @@ impl Rates {
     }
 }
 
+/// The element of `robot` that has no Taylor polynomials here, as the beginning of a remedy.
+pub(super) fn why_no_jets(robot: &Robot) -> String {
+    match robot.curve_leader() {
+        Some(joint) => format!("a joint follows joint '{}' by a polynomial; ", joint.name),
+        None => "a base that floats turns by a rotation vector; ".into(),
+    }
+}
+
 impl TipElements {
-    /// The elements that carry tip number `tip`; `None` where a rotation vector is among them.
+    /// The elements that carry tip number `tip`; `None` where a rotation vector or a polynomial coupling is among them.
     pub fn of(robot: &Robot, tip: usize) -> Option<Self> {
         let mut elements: Vec<(usize, Transmission)> =
             robot.carriers(robot.frame_of_tip(tip), 0).map(|(frame, motion)| (frame, *motion)).collect();
         elements.reverse();
-        (!elements.iter().any(|(_, motion)| motion.of_vector)).then_some(Self { tip, elements })
+        (elements.iter().all(|(_, motion)| motion.is_linear())).then_some(Self { tip, elements })
     }
 
     /// The motion of the tip while the joints follow these polynomials on \[-1, 1\], with the moving elements at `frames` in the middle.

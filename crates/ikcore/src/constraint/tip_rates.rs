@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::joint_span::JointSpan;
 use super::largest_factor::{IntervalFactor, TIGHT, largest_factor};
-use super::tip_jet::{TipElements, TipJet};
+use super::tip_jet::{TipElements, TipJet, why_no_jets};
 use crate::error::{Error, Result};
 use crate::limits::{ROUNDING, TipField, TipLimits};
 use crate::math::vector3::norm;
@@ -52,7 +52,7 @@ impl TipRates {
     /// The limits of the tips of `robot`; `None` without finite ones. `method` names the call in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] where a rotation vector carries a tip.
+    /// [`Error::UnsupportedLimit`] where a rotation vector or a joint that follows another by a polynomial carries a tip.
     pub fn new(robot: &Robot, limits: &TipLimits, method: impl Into<Message>) -> Result<Option<Self>> {
         let mut tips = vec![];
         for (tip, name) in robot.tips().enumerate() {
@@ -61,7 +61,7 @@ impl TipRates {
                 continue;
             };
             let Some(elements) = TipElements::of(robot, tip) else {
-                let remedy = message!["a base that floats turns by a rotation vector; leave out ", first.setting()];
+                let remedy = message![why_no_jets(robot), "leave out ", first.setting()];
                 return Err(Error::UnsupportedLimit { field: first.to_string(), method: method.into(), remedy });
             };
             tips.push(LimitedTip { elements, name: name.to_owned(), limits: of_tip });

@@ -8,7 +8,7 @@ use super::rigid_bodies::Dynamics;
 use super::rotation_vector_rate::rate_of_left_jacobian;
 use super::scratch::{BodyState, DynamicsScratch};
 use super::wide_vectors::{axes_of, dot, lever, product, products};
-use crate::kinematics::Wrench;
+use crate::kinematics::{Wrench, restored};
 use crate::math::Frame;
 use crate::math::arithmetic::{Arithmetic, NoFma, by_instructions};
 use crate::math::f64x4::F64x4;
@@ -70,6 +70,16 @@ impl Dynamics {
         }
     }
 
+    /// Angular and linear acceleration of the first stage of a curve due to its second derivative, p'' qd^2, in base axes; zero for other
+    /// stages.
+    #[cold]
+    fn curve_bias(&self, stage: usize, frame: &Frame, q: f64, rate: f64) -> [[f64; 3]; 2] {
+        let Some(curved) = self.curves.at(stage) else { return [[0.0; 3]; 2] };
+        let [_, _, bend] = curved.curve.at(q);
+        let along = restored(frame).axes[2].map(|entry| bend * rate * rate * entry);
+        if curved.turns { [along, [0.0; 3]] } else { [[0.0; 3], along] }
+    }
+
     /// Angular acceleration of the rotation vector due to its rates alone, in base axes.
     fn vector_bias(&self, frames: &[Frame], state: &DynamicState) -> [f64; 3] {
         let Some(vector) = &self.vector else { return [0.0; 3] };
@@ -113,7 +123,7 @@ fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &Dynamic
         let axes = axes_of(frame);
         let (rate, acceleration) = (state.qd[motion.joint], state.qdd[motion.joint]);
         // The axes of a rotation vector turn with the body before it.
-        let carrier = if motion.of_vector { states[first_of_vector].turn } else { parent.turn };
+        let carrier = if motion.is_of_vector() { states[first_of_vector].turn } else { parent.turn };
         let swept = A::cross_x4(carrier, axes[2]);
         let turn = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * rate), parent.turn);
         let mut turn_rate = A::mul_add_x4(axes[2], F64x4::splat(motion.turn_scale * acceleration), parent.turn_rate);
@@ -125,6 +135,11 @@ fn outward<A: Arithmetic>(dynamics: &Dynamics, frames: &[Frame], state: &Dynamic
         let mut of_origin = A::add_x4(parent.acceleration, product::<A>(&parent.spread, &lever));
         of_origin = A::mul_add_x4(axes[2], F64x4::splat(motion.slide_scale * acceleration), of_origin);
         of_origin = A::mul_add_x4(swept, F64x4::splat(2.0 * motion.slide_scale * rate), of_origin);
+        if !dynamics.curves.is_empty() {
+            let [of_turn, of_slide] = dynamics.curve_bias(i, frame, state.q[motion.joint], rate);
+            turn_rate = A::add_x4(turn_rate, F64x4::from_vector(&of_turn));
+            of_origin = A::add_x4(of_origin, F64x4::from_vector(&of_slide));
+        }
         let spread = spread(turn, turn_rate);
         let of_axes = products::<A>(&spread, &frame.axes);
         let moments = &body.moments;

@@ -2,8 +2,8 @@
 
 use super::inertia::Inertia;
 use super::mass_moments::MassMoments;
-use crate::kinematics::RotationVector;
 use crate::kinematics::chain::Transmission;
+use crate::kinematics::{CurvedStages, RotationVector};
 use crate::math::so3::norm;
 
 /// Friction and rotor of a joint, with those of its followers reflected.
@@ -43,6 +43,8 @@ pub struct Dynamics {
     pub(super) gravity: [f64; 3],
     pub(super) drives: Vec<JointDrive>,
     pub(super) vector: Option<RotationVector>,
+    /// First stages of polynomial couplings.
+    pub(super) curves: CurvedStages,
 }
 
 impl Dynamics {
@@ -51,14 +53,14 @@ impl Dynamics {
         bodies: Vec<MovingBody>,
         gravity: [f64; 3],
         drives: Vec<JointDrive>,
-        vector: Option<RotationVector>,
+        (vector, curves): (Option<RotationVector>, CurvedStages),
     ) -> Self {
         let mut carried: Vec<f64> =
             std::iter::once(&base).chain(bodies.iter().map(|body| &body.moments)).map(|m| m.mass).collect();
         for (i, body) in bodies.iter().enumerate().rev() {
             carried[body.parent] += carried[i + 1];
         }
-        Self { base, bodies, carried, gravity, drives, vector }
+        Self { base, bodies, carried, gravity, drives, vector, curves }
     }
 
     /// Number of frames: one more than there are moving bodies.

@@ -4,6 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::joint_curve::{CurvedStage, CurvedStages, JointCurve};
 use super::rotation_vector::RotationVector;
 use super::stages::Stages;
 use crate::math::vector3::{add_scaled, cross, scaled, sub};
@@ -18,13 +19,34 @@ pub(crate) struct Transmission {
     pub turn_offset: f64,
     pub slide_scale: f64,
     pub slide_offset: f64,
-    /// True for an entry of a [`RotationVector`], whose axis moves with all three entries.
-    pub of_vector: bool,
+    /// How the frame after the stage shows its motion.
+    pub axis: StageAxis,
+    /// Bound of the second derivative by q of the rotation or translation of a curve, rounded up; zero for others.
+    pub bend: f32,
+}
+
+/// Axis of a stage: the z axis of the frame after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StageAxis {
+    /// Of unit length, and fixed to the element before.
+    Own,
+    /// Entry of a [`RotationVector`], whose axis moves with all three entries.
+    OfVector,
+    /// Fixed to the element before, and as long as the slope of a [`JointCurve`] relative to the largest one, which is the scale.
+    OfCurve,
 }
 
 impl Transmission {
-    const NONE: Self =
-        Self { joint: 0, turn_scale: 0.0, turn_offset: 0.0, slide_scale: 0.0, slide_offset: 0.0, of_vector: false };
+    /// Moves nothing.
+    pub(super) const NONE: Self = Self {
+        joint: 0,
+        turn_scale: 0.0,
+        turn_offset: 0.0,
+        slide_scale: 0.0,
+        slide_offset: 0.0,
+        axis: StageAxis::Own,
+        bend: 0.0,
+    };
 
     /// Returns a rotation by `scale * q[joint] + offset` (rad).
     pub fn turn(joint: usize, scale: f64, offset: f64) -> Self {
@@ -38,7 +60,26 @@ impl Transmission {
 
     /// Returns a rotation by entry `joint` of a rotation vector.
     fn vector_entry(joint: usize) -> Self {
-        Self { of_vector: true, ..Self::turn(joint, 1.0, 0.0) }
+        Self { axis: StageAxis::OfVector, ..Self::turn(joint, 1.0, 0.0) }
+    }
+
+    /// Returns a motion along a curve; the scale is its largest slope.
+    pub(super) fn curved(joint: usize, turns: bool, curve: &JointCurve) -> Self {
+        let [steepest, bend] = curve.largest();
+        let motion = if turns { Self::turn } else { Self::slide };
+        Self { axis: StageAxis::OfCurve, bend: (bend as f32).next_up(), ..motion(joint, steepest, 0.0) }
+    }
+
+    /// Whether it is an entry of a rotation vector.
+    #[inline]
+    pub fn is_of_vector(&self) -> bool {
+        self.axis == StageAxis::OfVector
+    }
+
+    /// Whether it is a multiple of the joint plus a constant, about or along one axis.
+    #[inline]
+    pub fn is_linear(&self) -> bool {
+        self.axis == StageAxis::Own
     }
 
     /// The rotation (rad) or translation (m) per unit of the joint.
@@ -67,6 +108,14 @@ impl Transmission {
     pub fn travel(&self, reach: &[f64]) -> [f64; 2] {
         [self.turn_scale, self.slide_scale].map(|scale| scale.abs() * reach[self.joint])
     }
+
+    /// Returns bounds of the second derivatives of rotation (rad) and translation (m) by the share of a straight line of length `change`
+    /// in joint space.
+    #[inline]
+    pub fn bent(&self, change: &[f64]) -> [f64; 2] {
+        let bent = f64::from(self.bend) * change[self.joint] * change[self.joint];
+        if self.turn_scale == 0.0 { [0.0, bent] } else { [bent, 0.0] }
+    }
 }
 
 /// Constant frame of a link, relative to the frame after `stages` stages.
@@ -90,6 +139,8 @@ pub(crate) struct Chain {
     pub links: Vec<LinkFrame>,
     /// Rotation vector, whose stages do not turn about axes of their own.
     pub vector: Option<RotationVector>,
+    /// First stages of polynomial couplings.
+    pub curves: CurvedStages,
 }
 
 /// Stage counts for which kernels are compiled; chains are padded to the next one.
@@ -122,12 +173,14 @@ pub(crate) struct ChainFolder {
     motions: Vec<Transmission>,
     links: Vec<LinkFrame>,
     vector: Option<RotationVector>,
+    curves: CurvedStages,
 }
 
 impl ChainFolder {
     /// Creates an empty chain that starts at `base`.
     pub fn new(base: &Pose) -> Self {
-        Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None }
+        let curves = CurvedStages::default();
+        Self { constant: *base, frames: vec![], motions: vec![], links: vec![], vector: None, curves }
     }
 
     /// Appends a constant transform.
@@ -148,6 +201,15 @@ impl ChainFolder {
         self.constant = aligned.inverse();
     }
 
+    /// Appends a motion about or along the unit vector `axis`, along a curve.
+    pub fn curved(&mut self, axis: &Vector3<f64>, joint: usize, turns: bool, curve: &JointCurve) {
+        self.curves.push(CurvedStage::new(self.frames.len(), *curve, turns));
+        let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
+        self.frames.extend([Frame::from(&(self.constant * aligned)), Frame::IDENTITY]);
+        self.motions.extend([Transmission::curved(joint, turns, curve), Transmission::NONE]);
+        self.constant = aligned.inverse();
+    }
+
     /// Appends a rotation vector, stored in q from entry `joint` on. A chain has at most one.
     pub fn rotation_vector(&mut self, joint: usize) {
         let start = Frame::from(&self.constant);
@@ -161,10 +223,11 @@ impl ChainFolder {
     /// Returns the chain with its tip moved by `tool`. The chain must have at least one moving element and at most
     /// [`MAX_DOF`](crate::math::MAX_DOF).
     pub fn finish(self, tool: &Pose) -> Chain {
-        let Self { constant, frames, mut motions, links, vector } = self;
+        let Self { constant, frames, mut motions, links, vector, curves } = self;
         let moving = frames.len();
         motions.resize(padded(moving).next_multiple_of(LANES), Transmission::NONE);
-        Chain { moving, stages: Stages::new(&frames), motions, tip: Frame::from(&(constant * tool)), links, vector }
+        let tip = Frame::from(&(constant * tool));
+        Chain { moving, stages: Stages::new(&frames), motions, tip, links, vector, curves }
     }
 }
 

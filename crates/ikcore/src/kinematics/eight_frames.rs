@@ -3,6 +3,7 @@
 
 use super::chain::Transmission;
 use super::four_forward_pass::RunningFrames;
+use super::joint_curve::{CurvedStage, CurvedStages};
 use super::rotation_vector::RotationVector;
 use crate::math::Frame;
 use crate::math::arithmetic::Arithmetic;
@@ -15,6 +16,7 @@ use crate::math::sincos::sincos_eight;
 pub(crate) struct EightStages {
     stages: Vec<Stage>,
     vector: Option<RotationVector>,
+    curves: CurvedStages,
 }
 
 #[derive(Debug, Clone)]
@@ -28,14 +30,18 @@ struct Stage {
 
 impl EightStages {
     /// Builds the stages in the order of their frames, from index 1 on: parent frame, constant frame relative to it, and
-    /// motion. `vector` is the rotation vector among them.
-    pub fn new(stages: impl Iterator<Item = (usize, Frame, Transmission)>, vector: Option<RotationVector>) -> Self {
+    /// motion. `vector` is the rotation vector among them, `curves` are those of their curves.
+    pub fn new(
+        stages: impl Iterator<Item = (usize, Frame, Transmission)>,
+        vector: Option<RotationVector>,
+        curves: CurvedStages,
+    ) -> Self {
         let lanes = |frame: &Frame| Frame {
             axes: frame.axes.map(|axis| axis.map(|x| F32x8::splat(x as f32))),
             origin: frame.origin.map(|x| F32x8::splat(x as f32)),
         };
         let stages = stages.map(|(parent, frame, motion)| Stage { parent, frame: lanes(&frame), motion }).collect();
-        Self { stages, vector }
+        Self { stages, vector, curves }
     }
 
     /// Allocates the buffer of [`write`](Self::write): one frame more than there are moving elements.
@@ -54,6 +60,10 @@ impl EightStages {
             let of_vector = vector.as_ref().and_then(|(vector, turned)| vector.own_stage(i).map(|own| &turned[own]));
             let moved = if let Some(turned) = of_vector {
                 RunningFrames::<Eight<A>>::of(turned)
+            } else if let Some(curve) = self.curves.at(i) {
+                // With an axis of unit length: what these frames carry has no use for the slope.
+                let [sine, cosine, slide] = curve_lanes(curve, qs[motion.joint]).map(Eight::<A>::of);
+                RunningFrames::of(frame).moved(sine, cosine, slide)
             } else {
                 let q = Eight::<A>::of(qs[motion.joint]);
                 let (sine, cosine) = sincos_eight(q.mul_add(splat(motion.turn_scale), splat(motion.turn_offset)));
@@ -63,6 +73,16 @@ impl EightStages {
             frames[i + 1] = if *parent == 0 { moved } else { RunningFrames::of(&frames[*parent]).then(moved) }.stored();
         }
     }
+}
+
+/// Returns sine, cosine and slide of a curve, computed in double precision.
+#[cold]
+fn curve_lanes(curve: &CurvedStage, q: F32x8) -> [F32x8; 3] {
+    let lanes = q.0.map(|q| {
+        let [value, ..] = curve.curve.at(f64::from(q));
+        if curve.turns { [value.sin(), value.cos(), 0.0] } else { [0.0, 1.0, value] }
+    });
+    std::array::from_fn(|row| F32x8(lanes.map(|lane| lane[row] as f32)))
 }
 
 /// Returns the frames of the stages of a rotation vector, each relative to the previous one, computed in double precision.

@@ -48,7 +48,7 @@ impl Kernels {
 
     /// Returns the fastest kernels for this chain and machine.
     pub fn for_chain(chain: &Chain) -> Self {
-        let is_compiled = chain.vector.is_none() && chain.moving <= STACK_DOF;
+        let is_compiled = chain.vector.is_none() && chain.curves.is_empty() && chain.moving <= STACK_DOF;
         if is_compiled { for_stages(chain.padded_stages()) } else { Self::LOOPS }
     }
 

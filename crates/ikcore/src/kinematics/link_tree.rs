@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use super::chain::{Chain, LinkFrame, Transmission, basis_with_z_along};
+use super::joint_curve::{CurvedStage, CurvedStages, JointCurve, restored};
 use crate::math::arithmetic::NoFma;
 use crate::math::f64x4::F64x4;
 use crate::math::{Columns, Frame, Pose, STACK_DOF, pose};
@@ -23,12 +24,27 @@ struct BranchStage {
     /// Constant frame relative to the parent, z along the axis.
     frame: Frame,
     motion: Transmission,
+    curve: Option<BranchCurve>,
+}
+
+/// Stage of a curve.
+#[derive(Debug, Clone)]
+enum BranchCurve {
+    First(CurvedStage),
+    Second,
 }
 
 impl BranchStage {
     /// Returns the frame of the element with its joint at `value`, given the parent frame.
     fn moved(&self, value: f64, parent: &Frame) -> Frame {
         let Self { frame, motion, .. } = self;
+        match &self.curve {
+            None => {}
+            Some(BranchCurve::First(curve)) => {
+                return curve.shown(&parent.then::<NoFma>(&curve.placed(frame, value)), value);
+            }
+            Some(BranchCurve::Second) => return restored(parent),
+        }
         let (sine, cosine) = (motion.turn_scale * value + motion.turn_offset).sin_cos();
         let origin = frame.transform::<NoFma>(&[0.0, 0.0, motion.slide_scale * value + motion.slide_offset]);
         parent.then::<NoFma>(&Frame { origin, ..frame.turned::<NoFma>(sine, cosine) })
@@ -103,6 +119,17 @@ impl LinkTree {
         of_chain.chain(self.branches.iter().map(|stage| (stage.parent, stage.frame, stage.motion)))
     }
 
+    /// Returns the first stages of all curves, each with its number among [`stages`](Self::stages).
+    pub fn curves(&self, chain: &Chain) -> CurvedStages {
+        let mut curves = chain.curves.clone();
+        for stage in &self.branches {
+            if let Some(BranchCurve::First(curve)) = &stage.curve {
+                curves.push(*curve);
+            }
+        }
+        curves
+    }
+
     /// Returns the parent of frame `frame` > 0.
     fn parent(&self, frame: usize) -> usize {
         match frame.checked_sub(self.moving + 1) {
@@ -164,9 +191,23 @@ impl LinkTreeFolder {
 
     /// Appends a motion about or along the unit vector `axis`.
     pub fn moving(&mut self, axis: &Vector3<f64>, motion: Transmission) {
+        self.stage(axis, motion, None);
+    }
+
+    /// Appends a motion about or along the unit vector `axis`, along a curve.
+    pub fn curved(&mut self, axis: &Vector3<f64>, joint: usize, turns: bool, curve: &JointCurve) {
+        let first = CurvedStage::new(self.tree.moving + self.tree.branches.len(), *curve, turns);
+        self.stage(axis, Transmission::curved(joint, turns, curve), Some(BranchCurve::First(first)));
+        let (parent, aligned) = self.at;
+        let (frame, motion, curve) = (Frame::IDENTITY, Transmission::NONE, Some(BranchCurve::Second));
+        self.tree.branches.push(BranchStage { parent, frame, motion, curve });
+        self.at = (parent + 1, aligned);
+    }
+
+    fn stage(&mut self, axis: &Vector3<f64>, motion: Transmission, curve: Option<BranchCurve>) {
         let aligned = pose::from_parts([0.0; 3], basis_with_z_along(axis));
         let (parent, constant) = self.at;
-        self.tree.branches.push(BranchStage { parent, frame: Frame::from(&(constant * aligned)), motion });
+        self.tree.branches.push(BranchStage { parent, frame: Frame::from(&(constant * aligned)), motion, curve });
         self.at = (self.tree.moving + self.tree.branches.len(), aligned.inverse());
     }
 

@@ -1,5 +1,5 @@
-//! Kernels for any number of stages, written as plain loops: for chains with a [rotation vector](super::rotation_vector), and
-//! for chains longer than the compiled kernels.
+//! Kernels for any number of stages, written as plain loops: for chains with a [rotation vector](super::rotation_vector) or a
+//! [curve](super::joint_curve), and for chains longer than the compiled kernels.
 
 use super::chain::Chain;
 use super::torques::Wrench;
@@ -12,6 +12,12 @@ fn forward_pass(chain: &Chain, q: &[f64], mut visit: impl FnMut(usize, &Frame)) 
     let vector = chain.vector.as_ref().map(|vector| (vector, vector.frames(&vector.phi(q))));
     let mut frame = Frame::IDENTITY;
     for (i, motion) in chain.motions[..chain.moving].iter().enumerate() {
+        if let Some(curve) = chain.curves.at(i) {
+            let q = q[motion.joint];
+            frame = frame.then::<NoFma>(&curve.placed(&chain.stages.frame(i), q));
+            visit(i, &curve.shown(&frame, q));
+            continue;
+        }
         let turned = vector.as_ref().and_then(|(vector, frames)| vector.own_stage(i).map(|own| frames[own]));
         let moved = turned.unwrap_or_else(|| {
             let (sine, cosine) = (motion.turn_scale * q[motion.joint] + motion.turn_offset).sin_cos();

@@ -11,7 +11,8 @@
 //! | `four_forward_pass`, `eight_frames` | forward pass at four configurations, and at eight in single precision |
 //! | `kernels` | table of compiled kernels |
 //! | `rotation_vector` | rotation of a floating base |
-//! | `loop_kernels` | kernels for chains with a rotation vector, and for long chains |
+//! | `joint_curve` | joints that follow others by a polynomial |
+//! | `loop_kernels` | kernels for chains with a rotation vector or a curve, and for long chains |
 //! | `link_tree` | all links, including branches off the chain |
 //! | `screws` | axis and velocity of every stage |
 //! | `reach`, `fixed_direction` | bounds on the tip positions |
@@ -23,6 +24,7 @@ mod fixed_direction;
 mod forward_pass;
 mod four_forward_pass;
 mod jacobian;
+mod joint_curve;
 pub(crate) mod kernels;
 pub(crate) mod link_frames;
 pub(crate) mod link_tree;
@@ -37,6 +39,7 @@ mod torques;
 mod wide_frame;
 
 pub use fixed_direction::FixedDirection;
+pub(crate) use joint_curve::{CurvedStages, JointCurve, restored};
 pub use reach::{Reach, ReachShortfall};
 pub(crate) use rotation_vector::RotationVector;
 pub use screws::{Screw, Screws};

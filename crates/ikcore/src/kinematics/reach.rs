@@ -117,7 +117,11 @@ impl Reach {
 
     /// Extends this reach of the links of `chain` by the prismatic motion between these limits.
     pub(crate) fn with_slides(self, chain: &Chain, lower: &[f64], upper: &[f64]) -> Self {
-        let slides: f64 = chain.motions.iter().map(|motion| longest_slide(motion, lower, upper)).sum();
+        let slide = |(stage, motion): (usize, &Transmission)| {
+            let Some(curve) = chain.curves.at(stage) else { return longest_slide(motion, lower, upper) };
+            curve.longest_slide(lower[motion.joint], upper[motion.joint])
+        };
+        let slides: f64 = chain.motions.iter().enumerate().map(slide).sum();
         Self { radius: self.radius + slides, ..self }
     }
 

@@ -143,8 +143,10 @@ impl<'a> Assembly<'a> {
                 None => begin + motion.duration(),
             };
             let Some(tool_path) = part.tool_path else {
+                // Corners may take all of it.
                 let between_corners = [window.begin, window.end()].map(|s| time_at(&times, s));
-                let speed = tip_speed(self.around.robot, &motion, between_corners)?;
+                let has_way = window.to > window.from;
+                let speed = if has_way { tip_speed(self.around.robot, &motion, between_corners)? } else { 0.0 };
                 self.report(part.index, [start, end_of_part], speed, vec![]);
                 start = end_of_part;
                 continue;

@@ -9,7 +9,7 @@ use crate::math::vector::{distance, largest_difference};
 use crate::objective::{Bounds, Linearization, Point};
 use crate::robot::Robot;
 use crate::task::{Criterion, Target, Tolerance};
-use crate::timing::JointPath;
+use crate::timing::{ConstantLimits, JointPath};
 
 /// Steps of Newton's method, and the squared error at which they end (m^2, rad^2).
 const STEPS: usize = 20;
@@ -52,6 +52,18 @@ pub(super) struct Track {
 pub(super) struct Lost {
     /// Length up to there (m).
     pub at: f64,
+}
+
+/// Why a track cannot be refined.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Stray {
+    Lost(Lost),
+    /// At the length `at` (m) a joint would have to go to `value`, beyond its limits.
+    Beyond {
+        at: f64,
+        joint: usize,
+        value: f64,
+    },
 }
 
 impl Track {
@@ -100,7 +112,8 @@ impl<'a> Follower<'a> {
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let mut track = Track { knots: vec![0.0], rows: q.to_vec() };
         let mut before = Point::from_slice(q);
-        if !self.project(path, 0.0, &mut before) {
+        let bounds = self.bounds_from(q);
+        if !self.project(path, 0.0, &mut before, &bounds) {
             return Err(Lost { at: 0.0 });
         }
         track.rows.copy_from_slice(&before);
@@ -108,9 +121,14 @@ impl<'a> Follower<'a> {
             let end = begin + piece.length;
             let longest = LONGEST_STEP.min(PART_OF_TURN * piece.length_per_turn());
             let even = piece.length / (piece.length / longest).ceil().max(2.0);
-            self.follow_piece(path, [*begin, end, even], lead, &mut track)?;
+            self.follow_piece(path, [*begin, end, even], lead, &bounds, &mut track)?;
         }
         Ok(track)
+    }
+
+    /// The box for a track that begins at `q`, which may be nearer to its limits than the box is.
+    fn bounds_from(&self, q: &[f64]) -> Bounds {
+        self.bounds.clone().including(q)
     }
 
     fn follow_piece(
@@ -118,6 +136,7 @@ impl<'a> Follower<'a> {
         path: &ToolPath,
         [begin, end, even]: [f64; 3],
         lead: Option<&Lead<'_>>,
+        bounds: &Bounds,
         track: &mut Track,
     ) -> Result<(), Lost> {
         let (mut at, mut step) = (begin, even);
@@ -130,14 +149,14 @@ impl<'a> Follower<'a> {
             if let Some(lead) = lead {
                 let part = 1.0 - (-(next - at) / lead.within).exp();
                 q.iter_mut().zip(lead.toward).for_each(|(q, toward)| *q += part * (toward - *q));
-                self.bounds.clip(&mut q);
+                bounds.clip(&mut q);
             } else if last > 0 {
                 let stretch = (next - at) / (track.knots[last] - track.knots[last - 1]);
                 q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
-                self.bounds.clip(&mut q);
+                bounds.clip(&mut q);
             }
             let expected = q.clone();
-            if self.project(path, next, &mut q)
+            if self.project(path, next, &mut q, bounds)
                 && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE
                 && largest_difference(&q, &expected) <= LARGEST_SURPRISE
             {
@@ -154,10 +173,10 @@ impl<'a> Follower<'a> {
     }
 
     /// Moves `q` to the nearest configuration with the tip at the length `s`. Returns whether there is one.
-    fn project(&mut self, path: &ToolPath, s: f64, q: &mut [f64]) -> bool {
+    fn project(&mut self, path: &ToolPath, s: f64, q: &mut [f64], bounds: &Bounds) -> bool {
         let (target, criterion) = (Target::Pose(path.pose(s)), Criterion::from(Tolerance::default()));
         let (robot, mut value, mut count) = (self.robot, f64::INFINITY, 0);
-        self.linearization.project(q, &self.bounds, STEPS, |q, at| {
+        self.linearization.project(q, bounds, STEPS, |q, at| {
             let before = value;
             value = target.linearize(robot, q, &criterion, &mut at.first).score.value;
             count += 1;
@@ -168,15 +187,21 @@ impl<'a> Follower<'a> {
         value <= AS_NEAR_AS_SOLVES
     }
 
-    /// The joint path through a track, with knots added until the tip stays on its path between them.
+    /// The joint path through a track inside `limits`, with knots added until the tip stays on its path between them.
     ///
     /// # Errors
-    /// [`Lost`] where knots do not help; interruptions.
-    pub fn refined(&mut self, path: &ToolPath, mut track: Track) -> Result<Result<JointPath, Lost>> {
+    /// [`Stray`] where knots do not help; interruptions.
+    pub fn refined(
+        &mut self,
+        path: &ToolPath,
+        mut track: Track,
+        limits: &ConstantLimits,
+    ) -> Result<Result<JointPath, Stray>> {
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut coarse = vec![];
         for _ in 0..ROUNDS {
-            let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?;
+            let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?
+                .inside(&limits.lower, &limits.upper);
             coarse.clear();
             for i in 0..track.knots.len() - 1 {
                 checkpoint_at(i)?;
@@ -194,12 +219,12 @@ impl<'a> Follower<'a> {
             if track.knots.len() + coarse.len() > MOST_KNOTS {
                 break;
             }
-            match self.halved(path, &track, &coarse, &joints) {
+            match self.halved(path, &track, &coarse, &joints, limits) {
                 Ok(finer) => track = finer,
-                Err(lost) => return Ok(Err(lost)),
+                Err(stray) => return Ok(Err(stray)),
             }
         }
-        Ok(Err(Lost { at: coarse.first().map_or(0.0, |i| track.knots[*i]) }))
+        Ok(Err(Stray::Lost(Lost { at: coarse.first().map_or(0.0, |i| track.knots[*i]) })))
     }
 
     fn is_coarse(&mut self, path: &ToolPath, joints: &JointPath, [from, to]: [f64; 2]) -> bool {
@@ -216,19 +241,31 @@ impl<'a> Follower<'a> {
     }
 
     /// The track with the intervals `coarse` halved.
-    fn halved(&mut self, path: &ToolPath, track: &Track, coarse: &[usize], joints: &JointPath) -> Result<Track, Lost> {
+    fn halved(
+        &mut self,
+        path: &ToolPath,
+        track: &Track,
+        coarse: &[usize],
+        joints: &JointPath,
+        limits: &ConstantLimits,
+    ) -> Result<Track, Stray> {
         let mut finer = Track { knots: vec![], rows: vec![] };
         let mut coarse = coarse.iter().peekable();
         let mut q = Point::from_elem(0.0, self.robot.dof());
+        let bounds = self.bounds_from(track.row(0));
         for (i, knot) in track.knots.iter().enumerate() {
             finer.push(*knot, track.row(i));
             if coarse.next_if(|index| **index == i).is_some() {
                 let middle = 0.5 * (knot + track.knots[i + 1]);
                 joints.position(middle, &mut q);
-                self.bounds.clip(&mut q);
-                if !self.project(path, middle, &mut q) {
-                    return Err(Lost { at: middle });
+                bounds.clip(&mut q);
+                if !self.project(path, middle, &mut q, &bounds) {
+                    return Err(Stray::Lost(Lost { at: middle }));
                 }
+                if let Some((joint, value)) = limits.excess(&q) {
+                    return Err(Stray::Beyond { at: middle, joint, value });
+                }
+                limits.clip(&mut q);
                 finer.push(middle, &q);
             }
         }

@@ -158,7 +158,7 @@ impl<'a> Ladder<'a> {
                 (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
                 _ => self
                     .tracks_by_any_lead(start, &block.paths, monitor)?
-                    .map(|tracks| vec![Rung { q: start.into(), tracks, cost: 0.0, before: 0 }]),
+                    .map(|tracks| vec![self.rung(start.into(), tracks)]),
             };
             match found {
                 Ok(rungs) => ladder.push(rungs),
@@ -405,9 +405,21 @@ impl<'a> Ladder<'a> {
         }
     }
 
+    /// The rung of these tracks from `q`, without the rounding by which joints may be beyond their limits.
+    fn rung(&self, mut q: Point, mut tracks: Vec<Track>) -> Rung {
+        for row in tracks.iter_mut().flat_map(|track| track.rows.chunks_exact_mut(q.len().max(1))) {
+            self.limits.clip(row);
+        }
+        match tracks.first() {
+            Some(track) => q.copy_from_slice(track.row(0)),
+            None => self.limits.clip(&mut q),
+        }
+        Rung { q, tracks, cost: 0.0, before: 0 }
+    }
+
     /// A rung after the quickest of those `before`.
     fn after(&self, before: &[Rung], q: Point, tracks: Vec<Track>) -> Rung {
-        let q = tracks.first().map_or(q, |track| Point::from_slice(track.row(0)));
+        let Rung { q, tracks, .. } = self.rung(q, tracks);
         let total = |rung: &Rung| rung.cost + self.joint_time(rung.end(), &q);
         let costs = before.iter().map(total).enumerate();
         let (index, cost) = costs.min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((0, 0.0));

@@ -2,6 +2,7 @@
 
 use super::around::MoveSurroundings;
 use super::assembly::Assembly;
+use super::follower::{Lost, Stray};
 use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung, blocks};
 use super::moves_options::MovesOptions;
 use super::outline::outline;
@@ -13,7 +14,7 @@ use crate::limits::StartSlack;
 use crate::message::{Message, message};
 use crate::obstacle::Clearance;
 use crate::plan::{Cost, Plan};
-use crate::robot::{Robot, limit_rounding};
+use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
 use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
@@ -117,35 +118,18 @@ impl Climber<'_> {
         let mut paths = vec![];
         for (i, (block, rung)) in self.blocks.iter().zip(rungs).enumerate() {
             for (k, (path, track)) in block.paths.iter().zip(&rung.tracks).enumerate() {
-                let lost = |at: f64, cause: Cause| Dead::Path { path: k, at, cause };
-                match ladder.follower().refined(path, track.clone())? {
-                    Err(place) => return Err(self.no_way(i, lost(place.at, Cause::OutOfReach), monitor)?),
-                    Ok(joints) => match self.excess(&joints) {
-                        Some((joint, value)) => {
-                            return Err(self.no_way(
-                                i,
-                                lost(place_of(&joints, joint, value), Cause::Limit { joint, value }),
-                                monitor,
-                            )?);
-                        }
-                        None => paths.push(joints),
-                    },
-                }
+                let (at, cause) = match ladder.follower().refined(path, track.clone(), self.limits)? {
+                    Ok(joints) => {
+                        paths.push(joints);
+                        continue;
+                    }
+                    Err(Stray::Lost(Lost { at })) => (at, Cause::OutOfReach),
+                    Err(Stray::Beyond { at, joint, value }) => (at, Cause::Limit { joint, value }),
+                };
+                return Err(self.no_way(i, Dead::Path { path: k, at, cause }, monitor)?);
             }
         }
         Ok(paths)
-    }
-
-    /// A joint that leaves its limits, and its value.
-    fn excess(&self, path: &JointPath) -> Option<(usize, f64)> {
-        (0..self.robot.dof()).find_map(|joint| {
-            let (lower, upper) = (self.limits.lower[joint], self.limits.upper[joint]);
-            let rounding = limit_rounding(lower, upper);
-            let [lowest, highest] = path.range(joint);
-            (lowest < lower - rounding)
-                .then_some((joint, lowest))
-                .or((highest > upper + rounding).then_some((joint, highest)))
-        })
     }
 
     /// The error for a block without a configuration.
@@ -202,16 +186,6 @@ impl Climber<'_> {
             None => "begin with a joint move to a pose, so that the planner can choose the configuration",
         }
     }
-}
-
-/// Where on a path a joint is nearest to a value that it takes.
-fn place_of(path: &JointPath, joint: usize, value: f64) -> f64 {
-    let pieces = (0..path.pieces()).flat_map(|piece| [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (piece, part)));
-    let off = |(piece, part): (usize, f64)| {
-        let from = part * path.length(piece);
-        ((path.joint_at(piece, from, joint)[0] - value).abs(), path.breaks()[piece] + from)
-    };
-    pieces.map(off).min_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.0, |(_, s)| s)
 }
 
 /// The move at the length `at` of a path, and the length along that move.

@@ -86,7 +86,8 @@ impl<'a> Run<'a> {
         }
         let mut intervals = INTERVALS;
         while intervals <= MOST_INTERVALS {
-            let run = Self::through(parts, &corners, intervals)?;
+            let mut run = Self::through(parts, &corners, intervals)?;
+            run.path = run.path.inside(&limits.lower, &limits.upper);
             if run.is_accurate(robot) {
                 return Ok(Some(run));
             }

@@ -5,7 +5,7 @@ use crate::objective::Point;
 use crate::timing::{ConstantLimits, JointPath, TimingOptions, time};
 use crate::trajectory::Trajectory;
 
-/// Excess over a speed asked for, and shortfall, that count as none.
+/// Tolerances of the speed asked for, relative to it: an excess and a shortfall that count as none.
 const FASTER: f64 = 1e-6;
 const SLOWER: f64 = 3e-4;
 

@@ -57,6 +57,13 @@ impl Bounds {
         bounds
     }
 
+    /// The smallest box that holds this one and `q`.
+    pub(crate) fn including(mut self, q: &[f64]) -> Self {
+        self.lower.iter_mut().zip(q).for_each(|(lower, q)| *lower = lower.min(*q));
+        self.upper.iter_mut().zip(q).for_each(|(upper, q)| *upper = upper.max(*q));
+        self
+    }
+
     /// The box with these weights of the joints.
     pub(crate) fn weighted(self, weights: Option<Arc<JointWeights>>) -> Self {
         Self { weights, ..self }

@@ -95,7 +95,7 @@ impl PosedArm<'_> {
     }
 }
 
-/// The blocks of a group where the moving elements are, kept while the same group is asked for.
+/// Blocks of a group at the present frames, cached until another group is asked for.
 struct PosedGroup {
     group: usize,
     blocks: SmallVec<[BodyBlock; BLOCKS]>,

@@ -37,7 +37,11 @@ impl MovingElements {
             };
             at(lower).abs().max(at(upper).abs())
         };
-        let slides = stages.iter().map(slide).collect();
+        let mut slides: Vec<f64> = stages.iter().map(slide).collect();
+        for curve in robot.curves().iter() {
+            let (lower, upper) = robot.joints()[stages[curve.stage].2.joint].sampling_range();
+            slides[curve.stage] = curve.longest_slide(lower, upper);
+        }
         Self { stages, slides }
     }
 
@@ -67,7 +71,7 @@ impl MovingElements {
         while at > below {
             let ((parent, Frame { origin: [x, y, z], .. }, motion), slide) =
                 (&self.stages[at - 1], self.slides[at - 1]);
-            let lever = if motion.of_vector { far } else { beside };
+            let lever = if motion.is_of_vector() { far } else { beside };
             levers.0[motion.joint] += motion.turn_scale.abs() * lever + motion.slide_scale.abs();
             (beside, far) = (x.hypot(*y) + slide + far, x.hypot(*y).hypot(*z) + slide + far);
             at = *parent;

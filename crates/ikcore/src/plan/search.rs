@@ -6,12 +6,14 @@ use super::plan::Improvement;
 use crate::error::Result;
 use crate::objective::{Bounds, Objective, Point, Score};
 use crate::rng;
-use crate::solver::{AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, Status, Stop};
+use crate::solver::{
+    AnySolver, DerivativeFree, EvaluationMonitor, Evaluator, Monitor, PatternSearch, Status, Stop, run,
+};
 
 /// A solver, its budget and its seed.
 pub(crate) struct Search {
-    /// The algorithm.
-    pub solver: AnySolver<DerivativeFree>,
+    /// The algorithm; `None`: pattern search from the start.
+    pub solver: Option<AnySolver<DerivativeFree>>,
     /// Budget of the search.
     pub stop: Stop,
     /// Seed of the random draws.
@@ -64,7 +66,7 @@ impl Search {
         monitor: &mut dyn Monitor,
     ) -> Result<SearchResult> {
         let Self { solver, stop, seed, start } = self;
-        solver.validate()?;
+        solver.as_ref().map_or(Ok(()), AnySolver::<DerivativeFree>::validate)?;
         stop.validate()?;
         let done = Cell::new(0);
         let mut recorded = Recorded { cost, history: vec![], done: &done };
@@ -78,7 +80,10 @@ impl Search {
         }
         let objective: &mut dyn Objective = &mut recorded;
         let mut evaluator = Evaluator::new(objective, bounds, *stop, &mut rng, &mut reporting);
-        let status = solver.run(&mut evaluator, &x0);
+        let status = match solver {
+            Some(solver) => solver.run(&mut evaluator, &x0),
+            None => run(&PatternSearch, &mut evaluator, &x0),
+        };
         let (x, evaluations) = (evaluator.best().x.clone(), evaluator.evaluations());
         let history = recorded.history;
         monitor.progress(evaluations, evaluations);

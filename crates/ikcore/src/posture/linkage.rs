@@ -66,13 +66,14 @@ impl Linkage {
         let screws = robot.screws(&vec![0.0; robot.dof()]);
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.name().into(), problem: problem.into() };
         let height = screws[0].origin[2];
-        let planar = screws.iter().enumerate().all(|(i, screw)| {
-            let axis_is_z = (screw.turn[2] - 1.0).abs() < 1e-12 && screw.slide == [0.0; 3];
-            axis_is_z
-                && screw.joint == i
-                && (screw.origin[2] - height).abs() < 1e-9
-                && (screw.end[2] - height).abs() < 1e-9
-        });
+        let planar = robot.curve_leader().is_none()
+            && screws.iter().enumerate().all(|(i, screw)| {
+                let axis_is_z = (screw.turn[2] - 1.0).abs() < 1e-12 && screw.slide == [0.0; 3];
+                axis_is_z
+                    && screw.joint == i
+                    && (screw.origin[2] - height).abs() < 1e-9
+                    && (screw.end[2] - height).abs() < 1e-9
+            });
         if !planar {
             return Err(invalid("a posture on circles needs an arm of joints that turn about z in one plane".into()));
         }

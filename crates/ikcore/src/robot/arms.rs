@@ -42,7 +42,7 @@ fn arm(robot: &Robot, own: &[Element]) -> Option<TipArm> {
     for element in own {
         let mut element = element.clone();
         // A rotation vector is that of the base, which all tips share.
-        if let Element::Moving { joint, .. } = &mut element {
+        if let Element::Moving { joint, .. } | Element::Curved { joint, .. } = &mut element {
             let known = joints.iter().position(|known| known == joint);
             let number = known.unwrap_or(joints.len());
             if known.is_none() {

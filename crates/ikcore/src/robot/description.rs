@@ -40,6 +40,18 @@ pub enum Element {
         /// The first of the three.
         joint: usize,
     },
+    /// A motion by a polynomial of `q[joint]`, which needs position limits.
+    Curved {
+        /// Axis of the motion, of unit length.
+        axis: Vector3<f64>,
+        /// True for a rotation (rad), false for a translation (m).
+        turns: bool,
+        /// The independent joint that drives it.
+        joint: usize,
+        /// Coefficients of the polynomial (rad or m, by ascending powers of rad or m). From a little beyond the limits of the joint on it follows
+        /// its tangents.
+        polynomial: [f64; 5],
+    },
 }
 
 /// Drive of a moving element by an independent joint at q: `scale * q + offset`.
@@ -78,7 +90,9 @@ impl Description {
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.elements.iter().filter_map(|element| match element {
             Element::Link(name) => Some(name.as_str()),
-            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } => None,
+            Element::Fixed(_) | Element::Moving { .. } | Element::RotationVector { .. } | Element::Curved { .. } => {
+                None
+            }
         })
     }
 
@@ -90,6 +104,9 @@ impl Description {
                 Element::Fixed(transform) => chain.fixed(transform),
                 Element::Link(_) => chain.link(),
                 Element::RotationVector { joint } => chain.rotation_vector(*joint),
+                Element::Curved { axis, turns, joint, polynomial } => {
+                    chain.curved(axis, *joint, *turns, &self.joints[*joint].curve(polynomial));
+                }
                 // A follower whose factor is zero stands still.
                 Element::Moving { axis, turns, scale: 0.0, offset, .. } => chain.fixed(&moved(axis, *turns, *offset)),
                 Element::Moving { axis, turns, joint, scale, offset } => {
@@ -123,7 +140,10 @@ impl Description {
         let mut links = HashSet::new();
         self.elements.iter().try_for_each(|element| match element {
             Element::Link(name) if !links.insert(name) => Err(invalid(format!("two links are named '{name}'"))),
-            _ => element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str())),
+            _ => {
+                element.validate(&self.name, |joint| self.joints.get(joint).map(|driver| driver.name.as_str()))?;
+                element.require_bounded(&self.name, &self.joints)
+            }
         })
     }
 }
@@ -144,7 +164,7 @@ impl Element {
     pub(super) fn drivers(&self) -> Range<usize> {
         match self {
             Self::Fixed(_) | Self::Link(_) => 0..0,
-            Self::Moving { joint, .. } => *joint..joint + 1,
+            Self::Moving { joint, .. } | Self::Curved { joint, .. } => *joint..joint + 1,
             Self::RotationVector { joint } => *joint..joint + 3,
         }
     }
@@ -170,20 +190,41 @@ impl Element {
             Self::Fixed(_) | Self::Link(_) | Self::Moving { scale: 0.0, .. } => 0,
             Self::Moving { .. } => 1,
             Self::RotationVector { .. } => RotationVector::STAGES,
+            Self::Curved { .. } => 2,
         }
     }
 
     /// Copy of the element in a robot that has `shift` more joints before its own.
     pub(super) fn shifted(mut self, shift: usize) -> Self {
-        if let Self::Moving { joint, .. } | Self::RotationVector { joint } = &mut self {
+        if let Self::Moving { joint, .. } | Self::Curved { joint, .. } | Self::RotationVector { joint } = &mut self {
             *joint += shift;
         }
         self
     }
 
+    /// Err for a polynomial whose slope is not bounded, where one of `joints` drives it.
+    pub(super) fn require_bounded(&self, robot: &str, joints: &[Joint]) -> Result<()> {
+        let Self::Curved { joint, polynomial, .. } = self else { return Ok(()) };
+        let Some(leader) = joints.get(*joint).filter(|leader| !leader.curve(polynomial).is_bounded()) else {
+            return Ok(());
+        };
+        let name = &leader.name;
+        let problem = format!("a joint follows joint '{name}' by a polynomial: give '{name}' position limits");
+        Err(Error::InvalidRobot { robot: robot.into(), problem: problem.into() })
+    }
+
     /// Checks the assumptions of the kernels; `driver` names the joint of an index.
     pub(super) fn validate<'a>(&self, robot: &str, driver: impl Fn(usize) -> Option<&'a str>) -> Result<()> {
         let invalid = |problem: String| Error::InvalidRobot { robot: robot.into(), problem: problem.into() };
+        let driven = |joint: usize, axis: &Vector3<f64>| {
+            let Some(driver) = driver(joint) else {
+                return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
+            };
+            if !((axis.norm() - 1.0).abs() < 1e-9) {
+                return Err(invalid(format!("joint '{driver}' has a zero or non-finite axis")));
+            }
+            Ok(driver)
+        };
         match self {
             Self::Fixed(transform) => pose::checked("fixed transform", *transform).map(|_| ()),
             Self::Link(_) => Ok(()),
@@ -192,13 +233,12 @@ impl Element {
                 None => Err(invalid(format!("joints {joint} to {} of a rotation vector do not exist", joint + 2))),
             },
             Self::Moving { axis, joint, scale, offset, .. } => {
-                let Some(driver) = driver(*joint) else {
-                    return Err(invalid(format!("a moving element is driven by joint {joint}, which does not exist")));
-                };
-                if !((axis.norm() - 1.0).abs() < 1e-9) {
-                    return Err(invalid(format!("joint '{driver}' has a zero or non-finite axis")));
-                }
+                let driver = driven(*joint, axis)?;
                 require_finite("scale and offset of a joint", &[*scale, *offset], |_| format!("joint '{driver}'"))
+            }
+            Self::Curved { axis, joint, polynomial, .. } => {
+                let driver = driven(*joint, axis)?;
+                require_finite("coefficients of a polynomial coupling", polynomial, |_| format!("joint '{driver}'"))
             }
         }
     }

@@ -138,7 +138,8 @@ impl Robot {
         let drive =
             |joint: &Joint| JointDrive { damping: joint.damping, friction: joint.friction, armature: joint.armature };
         let drives: Vec<JointDrive> = self.joints().iter().map(drive).collect();
-        let dynamics = Dynamics::new(moments[0], bodies, masses.gravity, drives, self.chain().vector.clone());
+        let dynamics =
+            Dynamics::new(moments[0], bodies, masses.gravity, drives, (self.chain().vector.clone(), self.curves()));
         match dynamics.joint_without_mass() {
             None => Ok(dynamics),
             Some(joint) => {

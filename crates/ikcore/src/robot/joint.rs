@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, require_not_negative};
+use crate::kinematics::JointCurve;
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
 use crate::wording::{number, words};
@@ -53,6 +54,9 @@ pub struct Joint {
     /// Inertia of the rotor (kg m^2, kg), likewise.
     pub armature: f64,
 }
+
+/// How far beyond the limits of a joint (rad, m) its followers by polynomials keep to them: a start a little outside is led inside.
+const CURVE_SLACK: [f64; 2] = [0.2, 0.02];
 
 /// Rounding beyond a limit, relative to the range of the joint: single precision, and six digits of a file.
 const ROUNDING_OF_RANGE: f64 = 1e-6;
@@ -145,6 +149,12 @@ impl Joint {
         let reach = if self.kind.turns() { std::f64::consts::PI } else { UNLIMITED_SLIDE };
         let (lower, upper) = sampling_range::opened(lower, upper);
         sampling_range::finite(lower, upper, reach)
+    }
+
+    /// The motion of a follower by this polynomial (coefficients by ascending powers).
+    pub(crate) fn curve(&self, polynomial: &[f64; 5]) -> JointCurve {
+        let slack = CURVE_SLACK[usize::from(!self.kind.turns())];
+        JointCurve { coefficients: *polynomial, range: [self.lower - slack, self.upper + slack] }
     }
 
     /// Checks that the limits do not contradict each other.

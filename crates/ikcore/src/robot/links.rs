@@ -1,12 +1,13 @@
 //! Kinematics of any link: those of the chain, and those that branch off it.
 
-use super::joint::outside_limits;
+use super::joint::{Joint, outside_limits};
 use super::model::Robot;
 use std::collections::HashMap;
 
 use super::off_chain::HeldJoint;
 use crate::error::{Error, Result, shortened, suggestion};
-use crate::kinematics::chain::{LinkFrame, Transmission};
+use crate::kinematics::CurvedStages;
+use crate::kinematics::chain::{LinkFrame, StageAxis, Transmission};
 use crate::kinematics::eight_frames::EightStages;
 use crate::kinematics::link_tree::FrameBuffer;
 use crate::math::Columns;
@@ -191,9 +192,30 @@ impl Robot {
         self.tree().stages(self.chain())
     }
 
+    /// The first elements of polynomial couplings, each with its number among [`moving_elements`](Self::moving_elements).
+    pub(crate) fn curves(&self) -> CurvedStages {
+        self.tree().curves(self.chain())
+    }
+
+    /// The first joint that another one follows by a polynomial.
+    pub(crate) fn curve_leader(&self) -> Option<&Joint> {
+        let (.., motion) = self.moving_elements().find(|(.., motion)| motion.axis == StageAxis::OfCurve)?;
+        self.joints().get(motion.joint)
+    }
+
+    /// Err for a robot with a joint that follows another one by a polynomial; `what` names what is not computed for those.
+    ///
+    /// # Errors
+    /// [`Error::Contradiction`] names the joint that leads.
+    pub fn require_linear_couplings(&self, what: &str) -> Result<()> {
+        let Some(Joint { name, .. }) = self.curve_leader() else { return Ok(()) };
+        let problem = format!("{what} cannot be computed where a joint follows another one, '{name}', by a polynomial");
+        Err(Error::Contradiction { problem: problem.into() })
+    }
+
     /// The moving elements, for eight configurations at once.
     pub(crate) fn eight_stages(&self) -> EightStages {
-        EightStages::new(self.moving_elements(), self.chain().vector.clone())
+        EightStages::new(self.moving_elements(), self.chain().vector.clone(), self.curves())
     }
 
     /// Number of the last frame that carries both of these.

@@ -30,7 +30,8 @@ impl Robot {
                     }
                 }
                 Element::Moving { turns: true, offset, .. } => *offset += rng.uniform_in(-angle, angle),
-                Element::Moving { .. } | Element::RotationVector { .. } | Element::Link(_) => {}
+                Element::Moving { .. } | Element::Curved { .. } | Element::RotationVector { .. } | Element::Link(_) => {
+                }
             }
         }
         Self::assembled(parts)

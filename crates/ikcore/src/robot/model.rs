@@ -62,9 +62,9 @@ pub struct Robot {
     arms: Arc<OnceLock<Vec<Option<TipArm>>>>,
     /// Computed at first use.
     task_rank: OnceLock<TaskRank>,
-    /// Decided at first use; copies that differ in base and tool share it.
+    /// Closed form of the arm, found at first use; copies that differ in base and tool share it.
     closed_form: Arc<OnceLock<std::result::Result<ClosedFormArm, NoClosedForm>>>,
-    /// Decided at first use; copies that differ in base and tool share it.
+    /// Closed form for positions, found at first use; copies that differ in base and tool share it.
     position_arm: Arc<OnceLock<Option<PositionArm>>>,
     /// Bodies with their masses, or the reason why there are none; found at first use.
     dynamics: OnceLock<Arc<Result<Dynamics>>>,
@@ -258,6 +258,7 @@ impl Robot {
             Err(NoClosedForm::Drives { joint, axes }) => format!("none: joint '{}' drives {axes} axes", name(*joint)),
             Err(NoClosedForm::Rank(rank)) => format!("none: the tip moves in {rank} of 6 directions"),
             Err(NoClosedForm::Floating) => "none: the base floats".into(),
+            Err(NoClosedForm::Curved) => "none: a joint follows another one by a polynomial".into(),
             Err(NoClosedForm::Joined) => "none: arms of 3 and 4 joints have one if they are planar or SCARAs".into(),
             Err(NoClosedForm::Sliding) => "none: no method fits these sliding joints".into(),
         }
@@ -471,14 +472,14 @@ fn driving_motions<'a>(chain: &'a Chain, tips: &'a TipChains) -> &'a [Transmissi
 fn repeats_every_turn(motions: &[Transmission], joint: &Joint, number: usize) -> bool {
     let mut driven = motions.iter().filter(|motion| motion.joint == number);
     joint.kind.turns()
-        && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0 && !motion.of_vector)
+        && driven.all(|motion| motion.turn_scale.fract() == 0.0 && motion.slide_scale == 0.0 && motion.is_linear())
 }
 
 fn turn_periods(motions: &[Transmission], joints: &[Joint]) -> Vec<Option<f64>> {
     let period = |(number, joint): (usize, &Joint)| {
         let mut driven = motions.iter().filter(|motion| motion.joint == number);
         match (driven.next(), driven.next()) {
-            (Some(only), None) if only.turn_scale != 0.0 && !only.of_vector => Some(TAU / only.turn_scale.abs()),
+            (Some(only), None) if only.turn_scale != 0.0 && only.is_linear() => Some(TAU / only.turn_scale.abs()),
             _ => repeats_every_turn(motions, joint, number).then_some(TAU),
         }
     };

@@ -9,6 +9,7 @@ use super::joint::Joint;
 use crate::error::{Error, Result, require_finite};
 use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::link_tree::{LinkTree, LinkTreeFolder};
+use crate::math::polynomial;
 
 /// A link that is not on the chain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,7 +17,7 @@ pub(crate) struct OffChainLink {
     pub name: String,
     /// Number of the link that it is fixed to or moves on: those of the chain come first, then the branches in order.
     pub parent: usize,
-    /// From the parent to this link. Joints of [`Element::Moving`] from n on are the held ones.
+    /// From the parent to this link. Joints from n on are the held ones.
     pub elements: Vec<Element>,
 }
 
@@ -48,6 +49,9 @@ impl OffChain {
                     Element::Fixed(transform) => tree.fixed(&transform),
                     // A rotation vector stands at the start of the chain alone.
                     Element::Link(_) | Element::RotationVector { .. } => {}
+                    Element::Curved { axis, turns, joint, polynomial } => {
+                        tree.curved(&axis, joint, turns, &description.joints[joint].curve(&polynomial));
+                    }
                     Element::Moving { axis, turns, joint, scale, offset } => {
                         let motion = if turns { Transmission::turn } else { Transmission::slide };
                         tree.moving(&axis, motion(joint, scale, offset));
@@ -65,6 +69,11 @@ impl OffChain {
             && let Some(held) = self.held.get(joint.wrapping_sub(dof))
         {
             return Element::Fixed(moved(axis, *turns, scale * held.value + offset));
+        }
+        if let Element::Curved { axis, turns, joint, polynomial } = element
+            && let Some(held) = self.held.get(joint.wrapping_sub(dof))
+        {
+            return Element::Fixed(moved(axis, *turns, polynomial::value(polynomial, held.value)));
         }
         element.clone()
     }
@@ -89,7 +98,10 @@ impl OffChain {
                 return Err(invalid(format!("link '{}' comes before its parent", link.name)));
             }
             let elements = &mut link.elements.iter();
-            elements.try_for_each(|element| element.validate(&description.name, |joint| joints.get(joint).copied()))?;
+            elements.try_for_each(|element| {
+                element.validate(&description.name, |joint| joints.get(joint).copied())?;
+                element.require_bounded(&description.name, &description.joints)
+            })?;
         }
         self.held.iter().try_for_each(|held| {
             require_finite("held joints", &[held.value], |_| format!("joint '{}'", held.joint.name))

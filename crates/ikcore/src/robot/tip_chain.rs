@@ -182,6 +182,6 @@ impl Way {
 }
 
 fn folded(parts: &Parts, elements: &[Element]) -> Chain {
-    let elements = elements.to_vec();
-    Description { name: String::new(), joints: vec![], elements }.folded(&parts.base, &Pose::identity())
+    let (joints, elements) = (parts.description.joints.clone(), elements.to_vec());
+    Description { name: String::new(), joints, elements }.folded(&parts.base, &Pose::identity())
 }

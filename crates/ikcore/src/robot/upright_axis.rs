@@ -35,7 +35,7 @@ impl Robot {
         let driven = chain.motions[..chain.moving].iter().filter(|motion| motion.joint == first.joint).count();
         let frame = chain.stages.frame(0);
         let [x, y, z] = frame.axes[2];
-        let turns = first.turn_scale != 0.0 && !first.of_vector && chain.vector.is_none();
+        let turns = first.turn_scale != 0.0 && first.is_linear() && chain.vector.is_none();
         if self.tip_count() > 1 || driven != 1 || !turns || x.hypot(y) > TILT {
             return None;
         }

@@ -32,7 +32,7 @@ struct Touch {
     slope: f64,
 }
 
-/// Minimises the signed distance of a convex set with these tangents. The result is a lower bound, at most [`ACCURACY`] below
+/// Returns the smallest signed distance between a segment and a convex set, given by its tangents. The result is a lower bound, at most [`ACCURACY`] below
 /// the true distance unless it is at least `enough`.
 pub(super) fn by_tangents(
     [a, b]: &LineSegment,

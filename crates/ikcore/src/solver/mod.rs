@@ -19,6 +19,7 @@
 //! | `swarm/pso`, `swarm/qpso` | particle swarms, with velocities and quantum-behaved | values |
 //! | `swarm/firefly`, `swarm/bee_colony` | firefly algorithm, artificial bee colony | values |
 //! | `swarm/genetic`, `swarm/differential_evolution` | genetic algorithm, differential evolution | values |
+//! | `pattern_search` | pattern search (Hooke and Jeeves 1961), for planners alone | values |
 //! | `multi_start` | any of them, from many starts | what the wrapped solver needs |
 
 mod algorithm;
@@ -34,6 +35,7 @@ mod levenberg_marquardt;
 mod monitor;
 mod multi_start;
 mod newton_raphson;
+mod pattern_search;
 mod status;
 mod stop;
 mod stopwatch;
@@ -53,6 +55,7 @@ pub(crate) use monitor::EvaluationMonitor;
 pub use monitor::{Monitor, Unattended};
 pub use multi_start::{MultiStart, RestartRule};
 pub use newton_raphson::NewtonRaphson;
+pub(crate) use pattern_search::PatternSearch;
 pub use status::Status;
 pub use stop::Stop;
 pub use stopwatch::Stopwatch;

@@ -243,7 +243,7 @@ impl Turn {
     fn of_stage(motions: &[Transmission], stage: usize) -> Option<Self> {
         let Transmission { joint, turn_scale: scale, .. } = motions[stage];
         let alone = motions.iter().filter(|motion| motion.joint == joint).count() == 1;
-        (alone && scale != 0.0).then_some(Self { joint, scale })
+        (alone && scale != 0.0 && motions[stage].is_linear()).then_some(Self { joint, scale })
     }
 
     /// Returns the joint value `q` after a rotation by `angle` (rad), shifted by whole turns to be nearest to the middle of

@@ -127,7 +127,7 @@ impl Goal {
     ///
     /// # Errors
     /// As [`validate_numbers`](Self::validate_numbers) and, for the posture, [`Robot::check`]; [`Error::Contradiction`] for a
-    /// clearance goal without collision checks; [`Error::NoDynamics`], [`Error::WrongLength`] and [`Error::OutOfRange`] for torques.
+    /// clearance goal without collision checks, and for goals that a floating base or a polynomial coupling excludes; [`Error::NoDynamics`], [`Error::WrongLength`] and [`Error::OutOfRange`] for torques.
     pub fn validate(&self, robot: &Robot, among_obstacles: bool) -> Result<()> {
         self.validate_numbers()?;
         match self {
@@ -144,6 +144,12 @@ impl Goal {
             Self::Manipulability { .. } | Self::LinkManipulability { .. } if robot.is_floating() => {
                 let problem = "the goals Manipulability and LinkManipulability are not for robots on a floating base";
                 Err(Error::Contradiction { problem: problem.into() })
+            }
+            // So does that of the torques, and both assume axes of constant length.
+            Self::Manipulability { .. } | Self::LinkManipulability { .. } | Self::LeastTorque { .. }
+                if robot.curve_leader().is_some() =>
+            {
+                robot.require_linear_couplings("a goal of manipulability or torques")
             }
             Self::Manipulability { tip: Some(tip), .. } => robot.tip_number(tip).map(|_| ()),
             Self::Manipulability { tip: None, .. } => {

@@ -335,12 +335,24 @@ impl ConstantLimits {
 
     /// Whether `q` (n,) is inside the position limits, but for rounding.
     pub(crate) fn contain(&self, q: &[f64]) -> bool {
-        let is_inside = |(j, value): (usize, &f64)| {
-            let (lower, upper) = (self.lower[j], self.upper[j]);
+        self.excess(q).is_none()
+    }
+
+    /// The first joint that is beyond its limits by more than rounding, and its value.
+    pub(crate) fn excess(&self, q: &[f64]) -> Option<(usize, f64)> {
+        let is_inside = |(j, value): &(usize, f64)| {
+            let (lower, upper) = (self.lower[*j], self.upper[*j]);
             let rounding = limit_rounding(lower, upper);
             lower - rounding <= *value && *value <= upper + rounding
         };
-        q.iter().enumerate().all(is_inside)
+        q.iter().copied().enumerate().find(|joint| !is_inside(joint))
+    }
+
+    /// Moves each joint to the limit that it is beyond.
+    pub(crate) fn clip(&self, q: &mut [f64]) {
+        for ((q, lower), upper) in q.iter_mut().zip(&self.lower).zip(&self.upper) {
+            *q = q.clamp(*lower, *upper);
+        }
     }
 
     /// Checks that every joint has a velocity limit, which `method` needs.

@@ -134,6 +134,14 @@ impl JointPath {
         [0, 1, 2, 3].map(|power| &of_piece[power * n..(power + 1) * n])
     }
 
+    /// Adds a cubic to a joint in a piece.
+    pub(super) fn add(&mut self, piece: usize, joint: usize, cubic: [f64; POWERS]) {
+        let n = self.joints.len();
+        for (power, coefficient) in cubic.into_iter().enumerate() {
+            self.coefficients[(piece * POWERS + power) * n + joint] += coefficient;
+        }
+    }
+
     /// Position of one joint and its first and second derivative by the path parameter, at `from` within a piece.
     pub(crate) fn joint_at(&self, piece: usize, from: f64, joint: usize) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.powers(piece).map(|of_power| of_power[joint]);

@@ -7,6 +7,7 @@
 //! | `tube`, `least_bending` | the smooth paths that compete there |
 //! | `joint_path` | [`JointPath`]: joint positions as cubics in a path parameter |
 //! | `spline`, `polyline` | paths through waypoints |
+//! | `inside_limits` | splines that stay inside position limits |
 //! | `recorded_noise` | [`recorded_noise()`]: what the noise of a recording costs |
 //! | `grid` | the path cut into segments |
 //! | `derivatives` | derivatives of the path over a segment |
@@ -30,6 +31,7 @@ mod compose;
 mod constant_limits;
 mod derivatives;
 mod grid;
+mod inside_limits;
 mod jerk_limited;
 mod joint_path;
 mod least_bending;

@@ -11,7 +11,7 @@ pub(super) const METHOD: Setting = Setting::Method("tpbso");
 /// The search for a decision vector: as published, except for the given arguments.
 pub(super) fn search(solver: Option<&AnySolver<DerivativeFree>>, stop: Option<Stop>, seed: u64) -> Search {
     Search {
-        solver: solver.cloned().unwrap_or_else(published_swarm),
+        solver: Some(solver.cloned().unwrap_or_else(published_swarm)),
         stop: stop.unwrap_or_else(published_budget),
         seed,
         start: None,

@@ -121,7 +121,7 @@ impl StopTorques {
         Ok(largest)
     }
 
-    /// Largest used part of a limit in the command `q` and, at the ends of its phases, the stop after it.
+    /// Largest torque relative to its limit, in the command `q` and at the ends of the phases of the stop after it.
     pub fn largest(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
         let stop = context.stop_after(q);
         let motion = StoppedMotion { ticks: &stop, command: q, dt: context.dt, bends: false };

@@ -52,7 +52,8 @@ use crate::wording::said;
 ///     breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
 ///         as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
 ///         go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
-///     solver: solver of the search of "timed", for an arm with redundancy; None: differential evolution. `TPBSO` has a
+///     solver: solver of the search of "timed", for an arm with redundancy; None: pattern search from the motion
+///         found first. `TPBSO` has a
 ///         solver of its own.
 ///     stop: budgets; None: the method's own.
 ///     seed: seed of the random draws; the same seed gives the same bits.

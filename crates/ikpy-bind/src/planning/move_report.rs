@@ -49,7 +49,10 @@ impl PyMoveReport {
         let name = name.as_ref().map_or_else(String::new, |name| format!(" '{name}'"));
         let bound: Vec<String> = bound_by.iter().map(words).collect();
         let bound = if bound.is_empty() { String::new() } else { format!(", bound by {}", bound.join(", ")) };
-        format!("<MoveReport{name}: {start:.3} to {end:.3} s, up to {speed:.4} m/s between blends{bound}>")
+        // A wait, and a move that its blends take whole.
+        let fastest =
+            if *speed > 0.0 { format!("up to {speed:.4} m/s between blends") } else { "no way between blends".into() };
+        format!("<MoveReport{name}: {start:.3} to {end:.3} s, {fastest}{bound}>")
     }
 }
 

@@ -24,6 +24,9 @@ fn shown<'py>(py: Python<'py>, element: &Element) -> PyResult<Bound<'py, PyTuple
             let axis: Bound<'py, PyArray1<f64>> = copied(py, axis.as_slice());
             ("moving", *joint, *turns, axis, *scale, *offset).into_pyobject(py)
         }
+        Element::Curved { .. } => Err(invalid(
+            "interop: a robot with a joint that follows another one by a polynomial cannot be converted".into(),
+        )),
         Element::RotationVector { .. } => {
             Err(invalid("interop: a robot on a floating base cannot be converted; convert the arm alone".into()))
         }

@@ -103,8 +103,8 @@ impl PyRobot {
     ///     trusted: whether the model may use plugins, and files outside its folder. False: the model may come from
     ///         anyone.
     ///
-    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. Of equality constraints, linear ones are
-    /// followed: couplings of joints or fixed tendons, locks, and whatever follows from these, such as a parallelogram.
+    /// Hinges and slides keep their ranges; MuJoCo has no velocity limits. These equality constraints are followed: couplings of
+    /// two joints by a polynomial, those of fixed tendons that are linear, locks, and whatever follows from these, such as a parallelogram.
     /// Joints beside the chain are held at their reference positions, where loops of a gripper are closed. A
     /// `UserWarning` names an equality that held joints do not keep. Geoms that collide become bodies, except
     /// ellipsoids, planes and height fields, which are listed in `unread_collision_shapes`.
@@ -113,7 +113,7 @@ impl PyRobot {
     ///     BeetleIkError: MuJoCo is not installed.
     ///     UnknownNameError: no body or site of that name; the message lists them.
     ///     InvalidInputError: a model that MuJoCo cannot read, a ball or free joint on the chain, or an equality (connect,
-    ///         weld, tendon, polynomial coupling) that joints of the chain do not keep.
+    ///         weld, tendon) that joints of the chain do not keep.
     #[staticmethod]
     #[pyo3(signature = (model, *, base=None, tip=None, hold=None, collision=Some("primitives"), trusted=false),
            text_signature = "(model, *, base=None, tip=None, hold=None, collision='primitives', trusted=False)")]

@@ -84,6 +84,7 @@ impl PyRobot {
     /// Returns the exact gradient (n,) of `manipulability` at q (n,).
     #[pyo3(signature = (q, *, motion="pose"))]
     fn manipulability_gradient<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.core.require_linear_couplings("the gradient of manipulability").map_err(raise)?;
         let (measure, values) = self.measure_at(q, motion)?;
         let mut gradient = vec![0.0; values.len()];
         measure.gradient(&self.core, &values, &mut gradient);
@@ -97,6 +98,7 @@ impl PyRobot {
     /// It is zero for a link with fewer joints before it than directions. `motion` is as in `manipulability`.
     #[pyo3(signature = (q, *, motion="position"))]
     fn link_manipulability<'py>(&self, q: &Bound<'py, PyAny>, motion: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.core.require_linear_couplings("the manipulability of links").map_err(raise)?;
         let (measure, values) = self.measure_at(q, motion)?;
         Ok(own(row(q.py(), measure.link_indices(&self.core, &values).values().to_vec())))
     }

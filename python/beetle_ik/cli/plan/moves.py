@@ -104,7 +104,7 @@ def read_program(file: Path) -> list[Move]:
     """Returns the moves of a JSON file; errors name the move, counted from 0, and the key."""
     try:
         given = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+    except (OSError, RecursionError, ValueError) as error:  # not UTF-8, no JSON, nested too deep, numbers too long
         raise InvalidInputError(f"{file}: not a readable JSON file: {error}") from error
     if not isinstance(given, list):
         raise InvalidInputError(f"{file}: expected a list of moves, got {type(given).__name__}")

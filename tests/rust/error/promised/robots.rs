@@ -54,6 +54,7 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "Robot::from_bytes" Corrupt: Robot::from_bytes(&[1, 2, 3]), "cannot restore robot: it was stored in format 1 by an earlier version of beetle-ik, and this one reads format 3: make it anew";
         "Robot::tip_number" UnknownTip: arms().tip_number("lft_tool"), "robot 'pair' has no tip 'lft_tool' (did you mean 'left_tool'?); its tips: left_tool, right_tool";
         "Robot::require_one_tip" SeveralTips: arms().require_one_tip("track"), "track takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
+        "Robot::require_linear_couplings" Contradiction: bent().require_linear_couplings("calibration"), "calibration cannot be computed where a joint follows another one, 'turn', by a polynomial";
         "manipulability" SeveralTips: manipulability(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "manipulability_all" SeveralTips: manipulability_all(&arms(), Motion::Position, &[0.0; 16]), "manipulability takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
         "Scene::new" NoCapsules: Scene::new(&panda, vec![ball(2.0)]), "robot 'panda' has no capsules, so that nothing is known of the room it takes up: load its URDF with shapes fitted to its meshes, or give it capsules";

@@ -68,6 +68,15 @@ pub fn hinge(joint: Joint) -> Result<Robot> {
     chain.build()
 }
 
+/// A joint that follows another one by a polynomial.
+pub fn bent() -> Robot {
+    let xml = "<robot name='bent'><link name='base'/><link name='arm'/><link name='hand'/>\
+        <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/><limit lower='-1' upper='1'/></joint>\
+        <joint name='bend' type='continuous'><parent link='arm'/><child link='hand'/>\
+        <mimic joint='turn' polynomial='0 0.5 0.2'/></joint></robot>";
+    Robot::from_urdf(xml, None, None).unwrap()
+}
+
 pub fn leaf() -> Joint {
     Joint::new("hinge", JointKind::Revolute)
 }

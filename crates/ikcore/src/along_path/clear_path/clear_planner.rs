@@ -142,7 +142,7 @@ impl<'p> ClearPlanner<'p> {
             let Self { fractions, price, passage, .. } = &mut self;
             Smoothing { fractions, price, passage, starts_as_given }.smooth(&mut sequence)?;
             let nominal = JointWaypoints { knots: self.fractions.clone(), rows: sequence.concat() };
-            let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy, round == 0)?;
+            let (interpolation, waypoints, _) = self.problem.corners_of(&nominal, self.accuracy, round == 0)?;
             let smooth = self.problem.motion(&interpolation, waypoints.clone())?;
             let fault = self.fault(&smooth);
             if round == 0 {
@@ -266,7 +266,7 @@ impl<'p> ClearPlanner<'p> {
             }
         };
         let nominal = JointWaypoints { knots: std::mem::take(&mut self.fractions), rows: sequence.concat() };
-        let (interpolation, waypoints) = self.problem.corners_of(&nominal, self.accuracy, false)?;
+        let (interpolation, waypoints, _) = self.problem.corners_of(&nominal, self.accuracy, false)?;
         let motion = self.problem.motion(&interpolation, waypoints)?;
         let plan = self.finished(motion, None, Some(Status::InCollision))?;
         Ok(Plan { obstruction: Some(obstruction), own_points, ..plan })

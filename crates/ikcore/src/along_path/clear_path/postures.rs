@@ -32,7 +32,7 @@ const TRIES: usize = 4;
 pub(super) struct LayerSampling<'a> {
     /// Path parameters of the layers.
     pub fractions: &'a [f64],
-    /// Values of the parameter of a redundant arm with a closed form, or a quarter of the motions from random starts.
+    /// Samples of the redundancy of an arm with a closed form; other arms take four times as many random starts.
     pub density: usize,
 }
 

@@ -9,7 +9,7 @@ use crate::objective::Point;
 /// Number of steps to a posture that are checked, cheapest first, before it counts as out of reach.
 const CHECKED: usize = 12;
 
-/// Number of reached candidates below which sequences that lead to none of them go on by themselves.
+/// Fewest candidates reached in a layer; below, sequences that reach none of them are continued too.
 const FEW: usize = 16;
 
 /// A candidate posture.

@@ -81,11 +81,12 @@ const SWING: f64 = 0.05;
 /// Number of intervals beside a new knot in which the spline changes: in each by about a quarter of what it does in the one before.
 const FELT: usize = 4;
 
-/// Maximum number of halvings of an interval: to 1/4096 of its length.
-const HALVINGS: usize = 12;
+/// Maximum number of times that intervals are halved; near where one is, the spline of others changes, and they may need it later.
+const HALVINGS: usize = 20;
 
-/// Maximum number of knots added.
+/// Maximum number of knots: this, and more for each row of the path.
 const MOST_KNOTS: usize = 2000;
+const KNOTS_A_ROW: usize = 2;
 
 impl Interpolation<'_> {
     /// Returns the joint path through these waypoints, over the path parameter.
@@ -142,6 +143,7 @@ impl Interpolation<'_> {
     /// None in practice, as for [`path`](Self::path).
     pub(super) fn refined(&self, mut waypoints: JointWaypoints) -> Result<JointWaypoints> {
         let accuracy = self.accuracy;
+        let most = MOST_KNOTS + KNOTS_A_ROW * self.tip_path.positions().len();
         let mut settled = vec![false; waypoints.knots.len() - 1];
         for _ in 0..HALVINGS {
             let path = self.path(&waypoints)?;
@@ -152,12 +154,12 @@ impl Interpolation<'_> {
                 let mut swing: f64 = 0.0;
                 let off = deviation.between(ends, SAMPLES, |q| swing = swing.max(self.excess(q)));
                 // A given start may be off the path.
-                let is_off = off > ENOUGH * accuracy && off > ENOUGH * accuracy + deviation.at(ends[0]);
+                let is_off = off > ENOUGH * accuracy && (i > 0 || off > ENOUGH * accuracy + deviation.at(ends[0]));
                 Ok((is_off || swing > SWING * accuracy).then_some(i))
             };
             let intervals = (0..settled.len()).filter(|i| !settled[*i]);
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
-            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > MOST_KNOTS {
+            if coarse.is_empty() || waypoints.knots.len() + coarse.len() > most {
                 break;
             }
             let finer = self.halved(&waypoints, &coarse, &path, NEAR_ENOUGH * accuracy);

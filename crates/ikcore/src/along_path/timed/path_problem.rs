@@ -104,7 +104,7 @@ impl<'a> PathProblem<'a> {
     }
 
     /// Decides whether the arm stops at corners, passes them or rounds them (only where `may_round`): whichever motion through `nominal`
-    /// is the fastest. Returns the waypoints with the knots that this motion needs.
+    /// is the fastest. Returns the waypoints with the knots that this motion needs, and its rough duration (s).
     ///
     /// # Errors
     /// None in practice: waypoints that differ define a spline.
@@ -113,7 +113,7 @@ impl<'a> PathProblem<'a> {
         nominal: &JointWaypoints,
         accuracy: f64,
         may_round: bool,
-    ) -> Result<(Interpolation<'a>, JointWaypoints)> {
+    ) -> Result<(Interpolation<'a>, JointWaypoints, f64)> {
         let Self { robot, keeps, .. } = self;
         let on = |tip_path: &'a TipPath, corners: Corners, accuracy: f64| Interpolation {
             robot,
@@ -146,8 +146,8 @@ impl<'a> PathProblem<'a> {
             }
             of_wider = duration;
         }
-        let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone());
-        Ok(quickest.map_or_else(stopping, |(_, interpolation, waypoints)| (interpolation, waypoints)))
+        let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone(), f64::INFINITY);
+        Ok(quickest.map_or_else(stopping, |(duration, interpolation, waypoints)| (interpolation, waypoints, duration)))
     }
 
     /// Duration (s) of a motion: roughly, without jerk limits or where it is above `least` even without them.

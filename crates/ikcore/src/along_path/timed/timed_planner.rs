@@ -8,14 +8,15 @@ use super::timed_cost::TimedCost;
 use crate::along_path::deviation::deviation_on;
 use crate::error::{Error, Result};
 use crate::objective::{Objective, Point};
-use crate::plan::{AlongPathOptions, Plan, Search, SearchResult};
-use crate::solver::{AnySolver, DifferentialEvolution, Monitor, Schedule, Status, Stop};
+use crate::plan::{AlongPathOptions, Cost, Plan, Search, SearchResult};
+use crate::solver::{Monitor, Status, Stop};
 
-/// Evaluations of the search; more shorten the motion by less than 1 %.
+/// Most evaluations of the search: pattern search mostly ends by itself after 100 to 250, another solver uses them all.
 const EVALUATIONS: usize = 2000;
 
-/// Population size of the search.
-const POPULATION: usize = 30;
+/// A motion is not timed if its rough duration exceeds that of another one by this factor: it is never much too long, and too short where
+/// torques limit the motion.
+const HOPELESS: f64 = 1.05;
 
 /// Plans along a path, around motions that follow it; `None` where each of these ends on the way.
 ///
@@ -23,10 +24,17 @@ const POPULATION: usize = 30;
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
     let (mut candidates, mut refused) = (vec![], None);
-    for waypoints in NominalMotions::new(problem).all()? {
-        let (interpolation, waypoints) = problem.corners_of(&waypoints, problem.accuracy, true)?;
+    let mut least = f64::INFINITY;
+    for Nominal { roughly, interpolation, waypoints } in nominals(problem)? {
+        if roughly > HOPELESS * least {
+            continue;
+        }
         match problem.motion_if_held(&interpolation, waypoints.clone())? {
-            Ok(motion) => candidates.push(Candidate { plan: problem.plan(motion), interpolation, waypoints }),
+            Ok(motion) => {
+                let plan = problem.plan(motion);
+                least = if plan.violations.is_empty() { least.min(plan.cost) } else { least };
+                candidates.push(Candidate { plan, interpolation, waypoints });
+            }
             Err(heavy) => refused = refused.or(Some(heavy)),
         }
     }
@@ -45,6 +53,27 @@ pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -
             Ok(Some(problem.after(found, plan)))
         }
     }
+}
+
+/// A motion along the path that is timed only roughly.
+struct Nominal<'p> {
+    /// Duration (s), or zero where the duration is not what a plan costs.
+    roughly: f64,
+    interpolation: Interpolation<'p>,
+    waypoints: JointWaypoints,
+}
+
+/// The motions to begin with: the first as it comes, the others by their rough duration.
+fn nominals<'p>(problem: &'p PathProblem<'p>) -> Result<Vec<Nominal<'p>>> {
+    let of = |waypoints: JointWaypoints| {
+        let (interpolation, waypoints, duration) = problem.corners_of(&waypoints, problem.accuracy, true)?;
+        let roughly = if problem.options.objective == Cost::Time { duration } else { 0.0 };
+        Ok(Nominal { roughly, interpolation, waypoints })
+    };
+    let mut all: Vec<Nominal<'p>> = NominalMotions::new(problem).all()?.into_iter().map(of).collect::<Result<_>>()?;
+    let others = all.get_mut(1..).unwrap_or_default();
+    others.sort_by(|one, other| one.roughly.total_cmp(&other.roughly));
+    Ok(all)
 }
 
 /// A motion along the path to search around, and its plan.
@@ -151,10 +180,8 @@ pub(crate) fn search(
             }),
         };
     };
-    let schedule = Schedule::of(POPULATION);
-    let evolution = || AnySolver::Single(DifferentialEvolution { schedule, ..DifferentialEvolution::default() }.into());
     let search = Search {
-        solver: options.solver.clone().unwrap_or_else(evolution),
+        solver: options.solver.clone(),
         stop,
         seed: options.seed,
         // The nominal motion: nothing worse is returned.

@@ -45,7 +45,7 @@ impl PositionArm {
     /// within the limits `lower` and `upper` (rad) take least time.
     pub fn new(chain: &Chain, [lower, upper]: [&[f64]; 2]) -> Option<Self> {
         let joints = lower.len();
-        if !(3..=MOST).contains(&joints) || chain.vector.is_some() {
+        if !(3..=MOST).contains(&joints) || chain.vector.is_some() || !chain.curves.is_empty() {
             return None;
         }
         let drives = drives_of(chain);

@@ -27,7 +27,7 @@ pub const CLAMP: f64 = 1e-4;
 /// Radicand, relative to its terms, below which two solutions are nearly one: they lie within a thousandth of a radian.
 pub const NEARLY_DOUBLE: f64 = 1e-6;
 
-/// Negative radicand, relative to its terms, up to which an uncertain preceding root may hide a solution.
+/// Tolerance of a negative radicand, relative to its terms: a solution may be hidden by the error of the root before it.
 pub const NEAR_MISS: f64 = 0.02;
 
 /// Lever arm, as a multiple of its rounding error, below which a pose within a caller's tolerances may have solutions

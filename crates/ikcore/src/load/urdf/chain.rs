@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Document, UrdfKind};
-use super::mimic::{self, Coupling, Couplings};
+use super::mimic::{self, Coupling, Couplings, MimicDrive};
 use super::off_chain::{self, MimicFollower};
 use super::step;
 use super::tree::{Tree, TreeStep};
@@ -32,6 +32,7 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
     let mut chain = ChainBuilder::new(&document.name, base);
     let mut couplings = Couplings::new(document);
     let index_in_q = add_joints(&mut chain, document, &mut couplings, &moving)?;
+    let on_chain = narrow_joints(&mut chain, document, &mut couplings, (&index_in_q, &moving))?;
     for at in &path {
         let moved = match joints[at.joint].kind {
             UrdfKind::Fixed => None,
@@ -44,23 +45,36 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
         chain.link(step::far_link(document, *at));
     }
     let robot = chain.build()?;
-    let (off_chain, followers) = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
+    let (off_chain, beside) = off_chain::of(document, tree, &robot, couplings, (&index_in_q, &moving))?;
     let robot = robot.with_branches(off_chain, further.iter().map(|tip| (*tip).to_owned()).collect())?;
-    with_masses(document, robot, &followers)
+    with_masses(document, robot, &on_chain, &beside)
 }
 
-/// Adds masses, and the friction of mimic joints beside the chain.
-fn with_masses(document: &Document, robot: Robot, followers: &[MimicFollower]) -> Result<Robot> {
-    let followers_of = |master: usize| followers.iter().filter(move |follower| follower.master == master);
-    let robot = match followers {
+/// Adds masses, and the friction of mimic joints beside the chain; those on the chain have added theirs.
+fn with_masses(
+    document: &Document,
+    robot: Robot,
+    on_chain: &[MimicFollower],
+    beside: &[MimicFollower],
+) -> Result<Robot> {
+    let followers_of = |master: usize| beside.iter().filter(move |follower| follower.master == master);
+    let robot = match beside {
         [] => robot,
         _ => robot.with_limits(|index, joint| {
-            followers_of(index).for_each(|follower| mimic::reflect(joint, &follower.joint, follower.scale));
+            for follower in followers_of(index) {
+                if let MimicDrive::Linear(drive) = follower.drive {
+                    mimic::reflect(joint, &follower.joint, drive.scale);
+                }
+            }
         })?,
     };
     let links: HashSet<&str> = robot.all_link_names().collect();
     let inertias = document.inertias.iter().filter(|known| links.contains(known.link.as_str()));
-    let masses = Masses { links: inertias.cloned().collect(), faults: document.faults.clone(), ..Masses::default() };
+    let mut faults = document.faults.clone();
+    for MimicFollower { joint, master, drive } in on_chain.iter().chain(beside) {
+        faults.extend(mimic::curved_load(joint, *drive, &robot.joints()[*master].name));
+    }
+    let masses = Masses { links: inertias.cloned().collect(), faults, ..Masses::default() };
     Ok(robot.with_masses(masses))
 }
 
@@ -69,8 +83,8 @@ fn moving_on(document: &Document, path: &[TreeStep]) -> Vec<usize> {
     path.iter().map(|step| step.joint).filter(|joint| document.joints[*joint].kind != UrdfKind::Fixed).collect()
 }
 
-/// Adds the independent joints in the order of the chains, with limits narrowed by their mimic joints, and returns the index
-/// in q of each independent joint of the document. A master outside the chain takes the position of its first mimic joint.
+/// Adds the independent joints in the order of the chains, and returns the index in q of each independent joint of the document. A
+/// master outside the chain takes the position of its first mimic joint.
 fn add_joints(
     chain: &mut ChainBuilder,
     document: &Document,
@@ -86,13 +100,26 @@ fn add_joints(
             index_in_q.insert(master, chain.add_joint(step::described(document, master)?));
         }
     }
-    for &joint in moving {
-        let Coupling { master, drive } = couplings.of(joint)?;
-        if master != joint {
-            let follower = step::described(document, joint)?;
-            mimic::narrow(chain.joint_mut(index_in_q[&master]), &follower, drive)
-                .map_err(|problem| document.error_at(joint, problem))?;
+    Ok(index_in_q)
+}
+
+/// Narrows the limits of the independent joints by their mimic joints among `moving`, which it returns.
+fn narrow_joints(
+    chain: &mut ChainBuilder,
+    document: &Document,
+    couplings: &mut Couplings,
+    (index_in_q, moving): (&HashMap<usize, usize>, &[usize]),
+) -> Result<Vec<MimicFollower>> {
+    let mut followers = vec![];
+    for &number in moving {
+        let Coupling { master, drive } = couplings.of(number)?;
+        if master != number {
+            let follower =
+                MimicFollower { joint: step::described(document, number)?, master: index_in_q[&master], drive };
+            mimic::narrow(chain.joint_mut(follower.master), &follower.joint, drive)
+                .map_err(|problem| document.error_at(number, problem))?;
+            followers.push(follower);
         }
     }
-    Ok(index_in_q)
+    Ok(followers)
 }

@@ -52,9 +52,11 @@ pub(super) struct UrdfJoint {
     pub(super) mimic: Option<Mimic>,
 }
 
-/// Mimic relation: value = multiplier * value of the other joint + offset.
+/// Mimic relation: value = multiplier * value of the other joint + offset; with a polynomial, multiplier * its value + offset.
 pub(super) struct Mimic {
     pub(super) joint: String,
+    /// Coefficients by ascending powers of the value of the other joint, an extension of URDF for models of MuJoCo.
+    pub(super) polynomial: Option<[f64; 5]>,
     pub(super) multiplier: f64,
     pub(super) offset: f64,
 }
@@ -227,7 +229,26 @@ fn mimic(joint: Node, owner: &str) -> Result<Option<Mimic>> {
         }
         number => Ok(number.unwrap_or(default)),
     };
-    Ok(Some(Mimic { joint: master.into(), multiplier: finite("multiplier", 1.0)?, offset: finite("offset", 0.0)? }))
+    let (multiplier, offset) = (finite("multiplier", 1.0)?, finite("offset", 0.0)?);
+    let polynomial = mimic.attribute("polynomial").map(|text| polynomial(mimic, text, owner)).transpose()?;
+    Ok(Some(Mimic { joint: master.into(), polynomial, multiplier, offset }))
+}
+
+/// Reads up to five finite coefficients; missing ones are zero.
+fn polynomial(mimic: Node, text: &str, owner: &str) -> Result<[f64; 5]> {
+    let mut coefficients = [0.0; 5];
+    let mut places = coefficients.iter_mut();
+    for number in text.split_whitespace() {
+        match (places.next(), number.parse::<f64>()) {
+            (Some(place), Ok(value)) if value.is_finite() => *place = value,
+            _ => {
+                let shown = shortened(text);
+                let problem = format!("mimic polynomial of {owner} must be one to five finite numbers, got '{shown}'");
+                return Err(xml::error_at(mimic, problem));
+            }
+        }
+    }
+    Ok(coefficients)
 }
 
 fn vector(joint: Node, tag: &str, attribute: &str, owner: &str) -> Result<Option<[f64; 3]>> {

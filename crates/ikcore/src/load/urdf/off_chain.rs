@@ -3,18 +3,18 @@
 use std::collections::HashMap;
 
 use super::document::Document;
-use super::mimic::Couplings;
+use super::mimic::{Couplings, MimicDrive};
 use super::step::{self, DrivenJoint};
 use super::tree::{Tree, TreeStep};
 use crate::error::Result;
 use crate::robot::{HeldJoint, Joint, OffChain, OffChainLink, Robot};
 
-/// Mimic joint beside the chain that follows an independent joint.
+/// Mimic joint that follows an independent joint.
 pub(super) struct MimicFollower {
     pub(super) joint: Joint,
     /// Index of its master in q.
     pub(super) master: usize,
-    pub(super) scale: f64,
+    pub(super) drive: MimicDrive,
 }
 
 /// Returns the links that branch off the chain of `robot`, whose joints are `index_in_q`; joints in `moving` lead to a
@@ -35,7 +35,7 @@ pub(super) fn of(
         let moved = match moving.contains(&at.joint) || moves(document, at) {
             false => None,
             true => {
-                let coupling = couplings.of_off_chain(at.joint);
+                let coupling = couplings.of_off_chain(at.joint)?;
                 let joint = match drivers.get(&coupling.master) {
                     Some(known) => *known,
                     None => {
@@ -47,7 +47,7 @@ pub(super) fn of(
                 };
                 if joint < robot.dof() && at.joint != coupling.master && !moving.contains(&at.joint) {
                     let described = step::described(document, at.joint)?;
-                    followers.push(MimicFollower { joint: described, master: joint, scale: coupling.drive.scale });
+                    followers.push(MimicFollower { joint: described, master: joint, drive: coupling.drive });
                 }
                 Some(DrivenJoint { joint, kind: step::kind(document, at.joint)?, drive: coupling.drive })
             }

@@ -4,16 +4,17 @@ use nalgebra::Vector3;
 
 use super::document::{Document, UrdfKind};
 use super::inertial::JointLoad;
+use super::mimic::MimicDrive;
 use super::tree::TreeStep;
 use crate::error::Result;
 use crate::math::{Pose, pose};
-use crate::robot::{Drive, Element, Joint, JointKind};
+use crate::robot::{Element, Joint, JointKind};
 
 /// Motion of a joint: the robot joint that drives it, its kind and its drive.
 pub(super) struct DrivenJoint {
     pub(super) joint: usize,
     pub(super) kind: JointKind,
-    pub(super) drive: Drive,
+    pub(super) drive: MimicDrive,
 }
 
 /// Returns the elements of one joint; `moved` is `None` for a joint that does not move. A reversed joint is the inverse: the
@@ -23,9 +24,14 @@ pub(super) fn elements(document: &Document, step: TreeStep, moved: Option<Driven
     let sign = if step.reversed { -1.0 } else { 1.0 };
     let motion = match moved {
         None => None,
-        Some(DrivenJoint { joint, kind, drive: Drive { scale, offset } }) => {
+        Some(DrivenJoint { joint, kind, drive }) => {
             let axis = axis(document, step.joint)?;
-            Some(Element::moving(joint, kind, axis, Drive { scale: sign * scale, offset: sign * offset }))
+            Some(match drive.times(sign, 0.0) {
+                MimicDrive::Linear(drive) => Element::moving(joint, kind, axis, drive),
+                MimicDrive::Polynomial(polynomial) => {
+                    Element::Curved { axis: axis.normalize(), turns: kind.turns(), joint, polynomial }
+                }
+            })
         }
     };
     Ok(match step.reversed {

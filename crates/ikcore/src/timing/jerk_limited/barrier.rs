@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Longest part of the step that leaves room everywhere, if limits of jerks are straightened.
+    /// Largest fraction of the step that stays strictly feasible, with the jerk limits linearised.
     fn longest(&self) -> f64 {
         // Largest part of a room that the whole step would take.
         let mut taken = MOST_OF_ROOM;

@@ -32,7 +32,7 @@ pub(in crate::tracking) enum RunningRule {
     GoalPursuit(Box<GoalPursuit>),
     /// Variant of `MidStep` for several tips.
     TipStep(TipStep),
-    /// Way back to a configuration on the target; in place of `MidStep` and `TipStep`.
+    /// Joint motion back to a configuration on the target; in place of `MidStep` and `TipStep`.
     JointMove(JointMove),
     Solver(AnySolver),
     WeightedPseudoInverse(WeightedPseudoInverse, weighted_pseudo_inverse::Scratch),
