@@ -10,7 +10,6 @@ use super::STACK_DOF;
 use super::block_step::{BlockStep, TaskRows};
 use super::box_step::{LEAST_DAMPING, POSITION_ROWS, ROWS};
 use super::vector::{dot, squared_size};
-use super::vector3::{add, add_scaled, cross, sub};
 use crate::error::{Error, Result};
 
 /// Largest ratio of two weights; larger ones would differ by rounding alone.
@@ -19,8 +18,7 @@ const MOST: f64 = 1e8;
 /// Longest weighted step of a joint (rad, m), unless the plain step is longer; the tasks are not linear farther away.
 const LONGEST: f64 = 0.5;
 
-/// Largest effect of second order, of one joint relative to the wanted effect, and of the weights relative to the effect that they
-/// spare the heavy joints, in a step that counts on linear tasks.
+/// Largest effect of second order of one joint, relative to the wanted effect, in a step that counts on linear tasks.
 const BENT: f64 = 0.25;
 
 /// Fraction of the effect, squared, that a weighted step may miss.
@@ -77,6 +75,12 @@ impl JointWeights {
     /// The weights of a motion, in which the effect of one joint is at most this multiple of the wanted one.
     pub(crate) fn fading_at(self, largest_effect: f64) -> Self {
         Self { largest_effect, ..self }
+    }
+
+    /// The weights, lowered to `largest` at most; `None` if all are equal then.
+    pub(crate) fn at_most(&self, largest: f64) -> Option<Self> {
+        let relative = self.relative.iter().map(|weight| weight.min(largest)).collect();
+        (largest > 1.0).then_some(Self { relative, ..*self })
     }
 
     /// The weights (n,).
@@ -152,28 +156,7 @@ impl JointWeights {
             let valid = self.valid_step(wanted, step.tasks, j).max((plain[j] - step.x[j]).abs());
             if cheapest[j] == 0.0 { 0.0 } else { cheapest[j].abs() / valid }
         };
-        let farthest = (0..plain.len()).map(beyond).fold(1.0, f64::max);
-        farthest.max(self.bend_of_weights(step, plain, cheapest) / BENT).powi(-2)
-    }
-
-    /// Effect of second order on positions that the cheapest motion has beyond the plain one, relative to the effect that it spares
-    /// the heavy joints. At a stretched elbow the light joints would bend far to spare little, and back again a tick later.
-    fn bend_of_weights(&self, step: &BlockStep<'_>, plain: &[f64], cheapest: &[f64]) -> f64 {
-        let motion: Joints = plain.iter().zip(step.x).map(|(plain, x)| plain - x).collect();
-        let (mut bend, mut spared) = (0.0, 0.0);
-        for task in step.tasks {
-            let [of_plain, of_cheapest] = [&motion[..], cheapest].map(|motion| bend_along(task.columns, motion));
-            bend += squared_size(&[sub(&of_cheapest, &of_plain)]);
-            let mut effect = [0.0; POSITION_ROWS];
-            for (j, column) in
-                task.columns.iter().enumerate().take(plain.len()).filter(|(j, _)| self.relative[*j] > 1.0)
-            {
-                let way = motion[j] - cheapest[j];
-                effect.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * way);
-            }
-            spared += squared_size(&[effect]);
-        }
-        if bend == 0.0 { 0.0 } else { (bend / spared).sqrt() }
+        (0..plain.len()).map(beyond).fold(1.0, f64::max).powi(-2)
     }
 
     /// Longest step of joint `j` for which the tasks are linear, against the wanted effect of these sizes in position or in rotation.
@@ -196,19 +179,6 @@ fn after(step: &BlockStep<'_>, mut residuals: TaskVector, out: &[f64], sign: f64
         }
     }
     residuals
-}
-
-/// Effect of second order of a motion on the position of a task: each joint moves the tip on a circle, which the joints before it
-/// turn.
-fn bend_along(columns: &[[f64; ROWS]], motion: &[f64]) -> [f64; 3] {
-    let (mut turn, mut bend) = ([0.0; 3], [0.0; 3]);
-    for ([x, y, z, a, b, c], way) in columns.iter().zip(motion) {
-        let own = [a * way, b * way, c * way];
-        let moved = [x * way, y * way, z * way];
-        bend = add(&bend, &cross(&add_scaled(&turn, &own, 0.5), &moved));
-        turn = add(&turn, &own);
-    }
-    bend
 }
 
 /// Norms of the position rows and of the rotation rows.

@@ -8,6 +8,7 @@
 //! ones would otherwise make what the others cannot do in one tick.
 
 use super::approach::Approach;
+use super::soft_step::SoftStep;
 use super::tick::{Tick, TickResult};
 use crate::ik::RankedDescent;
 use crate::math::box_step::least_damping;
@@ -182,14 +183,11 @@ impl MidStepState {
             Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
-        let (step, bounds) = (&self.linearization, tick.bounds());
-        let lambda = least_damping(&step.columns[..n]);
-        let to = &mut self.trial.q;
-        to.resize(n, 0.0);
-        match preferred {
-            None => step.write_step(lambda, &found.q, bounds, to),
-            Some(preferred) => step.write_step_near(preferred, lambda, &found.q, bounds, to),
-        }
+        let model = &*self.linearization;
+        let lambda = least_damping(&model.columns[..n]);
+        self.trial.q.resize(n, 0.0);
+        let step = SoftStep { model, columns: &current.columns[..n], lambda, from: &found.q, preferred };
+        step.write(tick.bounds(), &mut self.trial.q);
         self.trial.update(tick.context.robot);
         found.evaluations += 1;
         found.iterations += 1;
