@@ -162,7 +162,7 @@ class PlaceFirst(Attack):
         q = np.vstack((arms.configurations(case["joints"])[:1], found))
         away, angle = arms.pose_error(arms.kinematics(case["joints"], q)[0], target)
         nearer = (away < 0.1 * TOLERANCE) & (angle < solution.rotation_error - 1e-3)
-        # Of arms with sliding joints the place is searched by descents, which may miss a corner that few starts lead to.
+        # Arms with sliding joints search by descents, which may miss a corner that few starts lead to.
         turning = all(joint["kind"] in arms.TURNED for joint in arms.free(case["joints"]))
         if nearer.sum() > (0 if turning else SELDOM * len(starts)):
             raise BrokenError("a configuration at the place is nearer in orientation", q[nearer][0].tolist())
