@@ -132,7 +132,7 @@ def flat_arm(off: np.ndarray) -> bik.Robot:
 
 
 def test_solutions_within_the_tolerances_alone_are_in_a_complete_set() -> None:
-    """A flat arm has a pose again with its first joint turned by half a turn; joints a little off the plane nearly so."""
+    """A flat arm has a pose again with its first joint turned by half a turn; joints a little off it nearly so."""
     flat, rng, nearly = flat_arm(np.zeros((5, 3))), np.random.default_rng(1), 0
     for _ in range(150):
         robot = flat_arm(rng.normal(size=(5, 3)) * 10.0 ** rng.uniform(-9.0, -6.7))
