@@ -118,3 +118,34 @@ def test_completeness_is_pickled() -> None:
         copy = pickle.loads(pickle.dumps(found))
         assert (copy.complete, copy.singular, copy.message) == (found.complete, found.singular, found.message)
         np.testing.assert_array_equal(copy.q, found.q)
+
+
+def flat_arm(off: np.ndarray) -> bik.Robot:
+    """Five joints whose axes, without the offsets `off` (5, 3), are in one plane or across it."""
+    at = np.array([(0.1, 0, 0.2), (0.05, 0, 0.35), (0.3, 0, -0.1), (0.2, 0, 0.25), (-0.3, 0, -0.1)]) + off
+    joints = (
+        f"<link name='l{i + 1}'/><joint name='j{i}' type='continuous'><parent link='l{i}'/><child link='l{i + 1}'/>"
+        f"<origin xyz='{x} {y} {z}'/><axis xyz='{axis}'/></joint>"
+        for i, ((x, y, z), axis) in enumerate(zip(at, ("0 0 1", "0 1 0", "0 1 0", "0 1 0", "1 0 0"), strict=True))
+    )
+    return bik.Robot.from_urdf(f"<robot name='flat'><link name='l0'/>{''.join(joints)}</robot>")
+
+
+def test_solutions_within_the_tolerances_alone_are_in_a_complete_set() -> None:
+    """A flat arm has a pose again with its first joint turned by half a turn; joints a little off it nearly so."""
+    flat, rng, nearly = flat_arm(np.zeros((5, 3))), np.random.default_rng(1), 0
+    for _ in range(150):
+        robot = flat_arm(rng.normal(size=(5, 3)) * 10.0 ** rng.uniform(-9.0, -6.7))
+        q = rng.uniform(-1.2, 1.2, 5)
+        q[4] = rng.choice([0.0, np.pi]) + rng.choice([-0.003, -0.002, 0.002, 0.003])  # near a double root
+        target = robot.fk(q)
+        found = bik.solve_all(robot, target)
+        if not found.complete or found.singular:
+            continue
+        for start in bik.solve_all(flat, flat.fk(q)).q:
+            other = bik.solve(robot, target, start_q=start, position_tolerance=5e-7, rotation_tolerance=5e-7)
+            if other.success:
+                apart = (found.q - other.q + np.pi) % (2.0 * np.pi) - np.pi
+                assert np.abs(apart).max(axis=1).min() < 1e-3, (other.q, found.q)
+                nearly += max(other.position_error, other.rotation_error) > 1e-8
+    assert nearly > 15

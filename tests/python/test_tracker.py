@@ -143,6 +143,17 @@ def test_an_arm_led_too_far_and_back_returns(more: dict[str, float]) -> None:
         moves = np.diff(moves, axis=0)
 
 
+def test_an_arm_that_swings_away_from_its_way_back_at_first_is_given_time_to_brake() -> None:
+    start = np.array([0.98233371, -0.99357679, -1.92091128, -2.14844872, -1.63379597, 0.48444543, 0.45319806])
+    limits, way = bik.Limits(velocity=1.5, acceleration=5.0), np.array([-0.292288112, 0.835362214, 0.465550891])
+    tracker, home = bik.Tracker(PANDA, start, dt=0.01, limits=limits), PANDA.fk(start)
+    for t in np.arange(0.0, 14.0, 0.01):
+        target = home.copy()
+        target[:3, 3] += way * np.interp(t, (0.0, 4.0, 6.0, 8.0), (0.0, 1.0, 1.0, 0.0))
+        step = tracker.step(target)
+    assert step.success, step.message
+
+
 def test_a_dead_end_is_told_with_the_joint_that_holds_the_arm() -> None:
     _, step = led_too_far_and_back(bik.Limits(velocity=1.5), recover=False)
     assert step.status == bik.Status.CAPPED

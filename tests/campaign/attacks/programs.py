@@ -13,7 +13,7 @@ from ..attack import Attack, BrokenError, Case
 Array = NDArray[np.float64]
 SAMPLES = 2000
 OFF_PATH = 1e-5
-SPEED, SLOWER = 1e-3, 1.5e-3
+SPEED, JERKY, SLOWER = 1e-3, 1.5e-3, 1.5e-3
 ACCELERATION, JERK = 4.0, 80.0
 MET, LARGEST_STEP, ROOM = 1e-9, 0.1, 0.02
 """Of the judge's own steps along a line: error (m, rad), largest change of a joint, and its distance from limits."""
@@ -166,7 +166,7 @@ class Programs(Attack):
                 said = np.zeros(SAMPLES, bool)
                 for bound in report.bound_by:
                     said |= (t >= bound.start) & (t <= bound.end)
-                if (speeds[clear] > asked * (1.0 + SPEED)).any():
+                if (speeds[clear] > asked * (1.0 + (JERKY if case["jerk"] else SPEED))).any():
                     raise BrokenError("a move is faster than asked for", (i, speeds[clear].max(), asked))
                 if (speeds[clear & ~said] < asked * (1.0 - SLOWER)).any():
                     raise BrokenError("a move is slower than asked for, and nothing says why", (i, asked))

@@ -14,6 +14,7 @@ from ..attack import Attack, BrokenError, Case
 TOLERANCE = 1e-6  # m and rad, of `solve`
 ROUNDING = 1e-9  # of errors, relative to the size of the arm
 TURN = 2.0 * np.pi
+SELDOM = 0.05  # share of descents
 
 
 def size(case: Case) -> float:
@@ -161,7 +162,9 @@ class PlaceFirst(Attack):
         q = np.vstack((arms.configurations(case["joints"])[:1], found))
         away, angle = arms.pose_error(arms.kinematics(case["joints"], q)[0], target)
         nearer = (away < 0.1 * TOLERANCE) & (angle < solution.rotation_error - 1e-3)
-        if nearer.any():
+        # Arms with sliding joints search by descents, which may miss a corner that few starts lead to.
+        turning = all(joint["kind"] in arms.TURNED for joint in arms.free(case["joints"]))
+        if nearer.sum() > (0 if turning else SELDOM * len(starts)):
             raise BrokenError("a configuration at the place is nearer in orientation", q[nearer][0].tolist())
         return 1
 

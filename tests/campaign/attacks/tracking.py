@@ -192,7 +192,10 @@ for away, ticks, noise, rare, given in life:
     stops.append((said, np.array([tracker.q] + [tracker.step(None).q for _ in range(round(said / dt) + 20)])))
 tracker.obstacles = scene
 for _ in range(round(4.0 / dt)):
-    tracker.step(target)
+    step = tracker.step(target)
+ways = 0  # a motion of the joints to a configuration on the target, which may take longer than that
+while step.message.startswith("on the way") and ways < round(60.0 / dt):
+    step, ways = tracker.step(target), ways + 1
 held = [tracker.step(target) for _ in range(round(1.0 / dt))]
 """
 AT_REST = 1e-9  # rad, m: a joint that moves less in a tick stands

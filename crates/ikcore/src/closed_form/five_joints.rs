@@ -12,9 +12,12 @@ use crate::closed_form::verify::Verifier;
 use crate::math::Frame;
 use crate::math::vector3::{Vector, add, cross, perpendicular, scaled, unit};
 
-/// Largest angle of the virtual joint (rad), and pose error without it (m, rad), from which Newton's method is tried; beyond
-/// it the pose is out of reach.
+/// Largest angle of the virtual joint (rad) at which it is left out without a look at the error.
 const NEAR_ZERO: f64 = 1e-4;
+
+/// Largest pose error without the virtual joint (m, rad) from which Newton's method is tried. Near a double root of the six
+/// joints, a pose that five joints miss by a tolerance turns the virtual joint by its square root.
+const WORTH_POLISHING: f64 = 1e-2;
 
 /// Closed form of five revolute joints.
 #[derive(Debug, Clone)]
@@ -35,7 +38,7 @@ impl FiveJoints {
             let mut joints = [joint; 6];
             joints[usize::from(before)..][..5].copy_from_slice(&chain.joints);
             let six = ClosedForm::new(&AxisChain { joints, tip: chain.tip });
-            Self { six, before, verifier: Verifier::new(chain, 1e-2) }
+            Self { six, before, verifier: Verifier::new(chain, WORTH_POLISHING) }
         };
         let [first, second, .., fourth, fifth] = &chain.joints;
         let size = chain.size();
@@ -84,10 +87,10 @@ impl FiveJoints {
             } else {
                 // A straight wrist lets the joint on its other side turn instead of the virtual one.
                 let partner = if self.before { 1 } else { 3 };
-                for turn in [added, -added] {
+                for turn in [0.0, added, -added] {
                     let mut set = set;
                     set[partner] += turn;
-                    if self.verifier.residual(target, &set) < NEAR_ZERO {
+                    if self.verifier.residual(target, &set) < WORTH_POLISHING {
                         self.verifier.add_near(target, set, &mut found);
                     }
                 }

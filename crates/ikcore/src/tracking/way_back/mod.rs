@@ -127,6 +127,8 @@ pub(super) struct WayBack {
     tried: Option<Tried>,
     /// Smallest distance from the goal, and the time since then (s).
     nearest: (f64, f64),
+    /// Whether the arm still swings away from the goal, as it does until the motion that it came with is braked.
+    swings_out: bool,
     patience: f64,
     linearization: Box<Linearization>,
     /// Evaluations of the last tick.
@@ -146,6 +148,7 @@ impl WayBack {
             error_at_rest: 0.0,
             tried: None,
             nearest: (f64::INFINITY, 0.0),
+            swings_out: false,
             patience: PATIENCE * factor,
             linearization: Box::default(),
             evaluations: 0,
@@ -344,7 +347,7 @@ impl WayBack {
             return Next::Continue;
         }
         self.away = self.away.map(|away| Away { way: Way::Taken, ..away });
-        (self.state, self.nearest) = (State::Returning, (f64::INFINITY, 0.0));
+        (self.state, self.nearest, self.swings_out) = (State::Returning, (0.0, 0.0), true);
         Next::HeadFor(to)
     }
 
@@ -361,9 +364,7 @@ impl WayBack {
             self.tried = None;
             return Next::Arrived;
         }
-        let (nearest, waited) = self.nearest;
-        self.nearest =
-            if distance < (1.0 - PROGRESS) * nearest { (distance, 0.0) } else { (nearest, waited + context.dt) };
+        self.note_progress(distance, context.dt);
         self.evaluations = 1;
         let error = context.aims.assess(context.robot, goal).score.value.sqrt();
         if error > BETTER * self.error_at_rest {
@@ -376,6 +377,18 @@ impl WayBack {
             return Next::Follow;
         }
         Next::Continue
+    }
+
+    /// Notes how far the arm is from its goal after a tick.
+    fn note_progress(&mut self, distance: f64, dt: f64) {
+        let (nearest, waited) = self.nearest;
+        let is_nearer = distance < (1.0 - PROGRESS) * nearest;
+        self.swings_out &= !is_nearer;
+        self.nearest = match (is_nearer, self.swings_out) {
+            (true, _) => (distance, 0.0),
+            (false, true) => (distance.max(nearest), waited + dt),
+            (false, false) => (nearest, waited + dt),
+        };
     }
 }
 
