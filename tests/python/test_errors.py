@@ -88,7 +88,11 @@ def test_the_classes_of_errors() -> None:
         (lambda: solve(start_q=[0.0] * 6), Invalid, "start_q of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: solve(start_q=np.zeros((1, 7))), Invalid, "start_q: expected one dimension, got shape (1, 7)"),
         (lambda: solve(start_q=with_entry(6, np.nan)), Invalid, "start_q must be finite, but joint 'joint_a7' is NaN"),
-        (lambda: solve(start_q=with_entry(0, -np.inf)), Invalid, "start_q must be finite, but joint 'joint_a1' is -inf"),
+        (
+            lambda: solve(start_q=with_entry(0, -np.inf)),
+            Invalid,
+            "start_q must be finite, but joint 'joint_a1' is -inf",
+        ),
         (
             lambda: solve(solver="BAS"),
             Invalid,

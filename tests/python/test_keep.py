@@ -165,7 +165,8 @@ def test_a_straight_end_that_breaks_it_is_an_error() -> None:
     with pytest.raises(Invalid) as refused:
         bik.plan_point_to_point(PANDA, start_q=Q, end_q=moved(Q, 0, 1), keep=keep, retreat=0.1)
     assert str(refused.value).startswith(
-        "start_q cannot be reached: no straight retreat of 0.1000 m: what is to be kept on the way does not hold on it: "
+        "start_q cannot be reached: no straight retreat of 0.1000 m: what is to be kept on the way does not hold "
+        "on it: "
         "deviation in z is 0."
     )
 
@@ -244,7 +245,7 @@ def test_an_end_that_breaks_it_says_by_how_much() -> None:
     tipped = moved(Q, 5, 0.3)
     keep = bik.upright(PANDA, tilt=0.2)
     says = "what is to be kept on the way does not hold there: tilt 0.3000 rad of at most 0.2000"
-    for name, ends in {"start": (tipped, Q), "end": (Q, tipped)}.items():
+    for name, ends in {"start_q": (tipped, Q), "end_q": (Q, tipped)}.items():
         with pytest.raises(Invalid) as refused:
             bik.plan_point_to_point(PANDA, start_q=ends[0], end_q=ends[1], keep=keep)
         assert str(refused.value) == f"{name}: {says}"

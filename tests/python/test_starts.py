@@ -220,7 +220,8 @@ def test_an_end_outside_is_refused_with_the_remedy() -> None:
     with pytest.raises(bik.LimitError) as caught:
         bik.plan_point_to_point(PANDA, start_q=INSIDE, end_q=below(0.05), limits=LIMITS)
     assert str(caught.value) == (
-        f"end_q: joint 'panda_joint2' at -1.8128 is outside its limits [-1.7628, 1.7628] by 0.05000 rad: {INSIDE_ADVICE}"
+        "end_q: joint 'panda_joint2' at -1.8128 is outside its limits [-1.7628, 1.7628] by 0.05000 rad: "
+        f"{INSIDE_ADVICE}"
     )
 
 
