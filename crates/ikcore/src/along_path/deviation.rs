@@ -134,18 +134,24 @@ impl<C: Configurations> TipDeviation<'_, C> {
         distance.max(angle)
     }
 
-    /// The largest [`at`](Self::at) at `samples` parameters between two path parameters, each of whose configurations `visit` is told.
-    pub(crate) fn between(&self, [from, to]: [f64; 2], samples: usize, mut visit: impl FnMut(&[f64])) -> f64 {
-        let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
+    /// Whether `is_too_much` of the configuration and what [`at`](Self::at) is there, at one of `samples` parameters between two others. It
+    /// begins in the middle, where a spline is farthest from its path.
+    pub(crate) fn any_between(
+        &self,
+        [from, to]: [f64; 2],
+        samples: usize,
+        is_too_much: impl Fn(&[f64], f64) -> bool,
+    ) -> bool {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        let mut off = |fraction: f64| {
+        let mut visit = |i: usize| {
+            let fraction = from + (to - from) * i as f64 / (samples + 1) as f64;
             (self.configurations)(fraction, q);
-            visit(q);
             let [distance, angle] = self.beyond(self.parts_of(fraction, q, [from, to]));
-            distance.max(angle)
+            is_too_much(q, distance.max(angle))
         };
-        (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
+        let half = samples.div_ceil(2);
+        (half..=samples).chain(1..half).any(&mut visit)
     }
 
     fn parts_between(&self, fraction: f64, ends: [f64; 2]) -> [f64; 2] {
