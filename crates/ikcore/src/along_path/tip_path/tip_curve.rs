@@ -1,7 +1,8 @@
 //! The curve that the tip follows.
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
+use super::corners::CORNER;
 use super::path_target::PathTarget;
 use super::repetition::refuse_repetition;
 use super::segment_geometry::{distance_to_segment, turn};
@@ -27,6 +28,8 @@ pub struct TipPath {
     task: Option<Task>,
     /// Band in which the tip may be off; `None`: not at all.
     tolerance_band: Option<ToleranceBand>,
+    /// Angle (rad) that the orientations leave open between the rows.
+    open_turn: f64,
     /// Length of the curve (m); a radian of rotation counts as a metre.
     length: f64,
     /// Rows at which the direction jumps.
@@ -92,6 +95,7 @@ impl TipPath {
             corners: vec![],
             task: None,
             tolerance_band: None,
+            open_turn: 0.0,
             rotations: rotations.map(|rows| kept.iter().map(|i| rows[*i]).collect()),
             times: times.map(|times| kept.iter().map(|i| times[*i]).collect()),
             points: Waypoints::new(place, turned)?,
@@ -213,6 +217,35 @@ impl TipPath {
         (1..self.positions.len() - 1).filter(smooth).map(rise).fold(0.0, f64::max)
     }
 
+    /// The same curve as a sampled one, whose orientations are known between the rows no better than the samples determine them.
+    pub(crate) fn as_sampled(self) -> Self {
+        Self { open_turn: self.turn_coarseness(), ..self }
+    }
+
+    /// Angle (rad) that the orientations leave open between the rows; 0 for a curve that is taken literally.
+    pub(crate) fn open_turn(&self) -> f64 {
+        self.open_turn
+    }
+
+    /// Estimated angle (rad) of the turns between rows from the sampled orientations, as [`coarseness`](Self::coarseness) of positions.
+    pub(crate) fn turn_coarseness(&self) -> f64 {
+        let Some(rotations) = &self.rotations else { return 0.0 };
+        let axis = match self.target(0.0) {
+            Target::Pointing { axis, .. } => Some(Vector3::from(axis)),
+            _ => None,
+        };
+        let step = |pair: &[UnitQuaternion<f64>]| {
+            axis.map_or_else(|| pair[0].rotation_to(&pair[1]).scaled_axis(), |axis| pair[1] * axis - pair[0] * axis)
+        };
+        let turned = rotations.windows(2).map(step).collect::<Vec<_>>();
+        let rise = |pair: &[Vector3<f64>]| {
+            let bend = (pair[1] - pair[0]).norm();
+            let is_smooth = bend < CORNER * pair[0].norm().max(pair[1].norm());
+            if is_smooth { 0.125 * bend } else { 0.0 }
+        };
+        turned.windows(2).map(rise).fold(0.0, f64::max)
+    }
+
     /// Path parameters at which the direction jumps.
     pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
         self.corners.iter().map(|row| self.fractions[*row])
@@ -297,7 +330,7 @@ impl TipPath {
         let waypoints = Waypoints::new(positions, places.iter().map(rotation).collect())?;
         let times: Option<Vec<f64>> = places.iter().map(|at| self.time(*at)).collect();
         let part = Self::from_rows(&waypoints, &(0..places.len()).collect::<Vec<_>>(), times.as_deref())?;
-        Ok(Self { task: self.task, tolerance_band: self.tolerance_band, ..part })
+        Ok(Self { task: self.task, tolerance_band: self.tolerance_band, open_turn: self.open_turn, ..part })
     }
 
     /// The time (s) at a path parameter of a path in time.
