@@ -62,6 +62,11 @@ impl GoalFit {
         self.moments[0] += 1.0;
     }
 
+    /// Weighted mean of the times from the samples to the last one (ticks).
+    pub fn mean_age(&self) -> f64 {
+        -self.moments[1] / self.moments[0]
+    }
+
     /// The gains of the last sample.
     pub fn gains(&self, degree: Degree) -> Gains {
         let [position, velocity, acceleration] = self.solve([1.0, 0.0, 0.0], degree);

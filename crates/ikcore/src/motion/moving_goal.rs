@@ -130,12 +130,6 @@ impl MovingGoal {
         self.memory.samples() * self.interval
     }
 
-    /// Ticks from the first sample that the goal remembers to the last; without noise, from the last but one.
-    pub fn remembered(&self) -> f64 {
-        let memory = self.memory.samples();
-        self.samples.map_or(memory, |samples| memory.min(samples as f64)).max(1.0) * self.interval
-    }
-
     /// Root mean square of the corrections of its position that noise causes.
     pub fn jitter(&self) -> f64 {
         self.corrected * self.noise()
@@ -182,9 +176,11 @@ impl MovingGoal {
         to_full_speed.max(MOVES_ON * self.interval)
     }
 
-    /// Writes the configuration before the samples that the goal remembers, at `time` or earlier: at the last one at the latest.
-    pub fn remembered_from(&self, time: f64, scales: &Scales, out: &mut Point) {
-        self.expected((time - self.remembered()).min(self.last_sample), scales, out);
+    /// Writes the configuration before the samples that the goal remembers: at the last one without noise. It is never before the samples
+    /// themselves, where a parabola would turn back.
+    pub fn remembered_from(&self, scales: &Scales, out: &mut Point) {
+        let factor = if self.degree() == Degree::Line { 2.0 } else { 1.0 };
+        self.expected(self.last_sample - factor * self.fit.mean_age(), scales, out);
     }
 
     fn move_to_now(&mut self, scales: &Scales) {
