@@ -80,6 +80,12 @@ impl GoalFit {
         row.iter().zip(solution).map(|(row, x)| row * x).sum::<f64>().max(0.0).sqrt()
     }
 
+    /// Standard deviation of the velocity `ahead` ticks after the last sample, in those of a sample (1/tick).
+    pub fn deviation_of_velocity(&self, ahead: f64, degree: Degree) -> f64 {
+        let [_, velocity, acceleration] = self.solve([0.0, 1.0, ahead], degree);
+        (velocity + ahead * acceleration).max(0.0).sqrt()
+    }
+
     /// Solves the normal equations of the samples; a coefficient that they leave open is zero.
     fn solve(&self, right: [f64; 3], degree: Degree) -> [f64; 3] {
         let [m0, m1, m2, m3, m4] = self.moments;
