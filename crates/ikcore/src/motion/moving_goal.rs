@@ -415,6 +415,44 @@ mod tests {
     }
 
     #[test]
+    fn what_came_before_the_remembered_samples_is_among_them_also_after_a_gap() {
+        let path = |time: f64| 1e-6 * time * time;
+        let scales = scales();
+        let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
+        let (mut samples, mut before) = (vec![], Point::new());
+        for tick in 1..=400 {
+            let now = f64::from(tick);
+            goal.advance(&scales);
+            // A gap of ten intervals lets the mean interval grow.
+            if tick % 8 == 0 && !(200..280).contains(&tick) {
+                goal.correct(GoalSample { q: &[path(now)], time: now }, &scales);
+                samples.push(path(now));
+                goal.remembered_from(&scales, &mut before);
+                let oldest = samples[samples.len().saturating_sub(3)];
+                assert!((oldest..=path(now)).contains(&before[0]), "{} in tick {tick}", before[0]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_goal_whose_noise_is_not_known_yet_does_not_run_away_in_a_gap() {
+        let (noise, mut worst) = (0.01, 0.0_f64);
+        for seed in 0..50 {
+            let (scales, mut draws) = (scales(), rng::stream(seed, 0));
+            let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
+            for tick in 1..=400 {
+                let now = f64::from(tick);
+                goal.advance(&scales);
+                if tick % 10 == 0 && tick <= 80 {
+                    goal.correct(GoalSample { q: &[noise * normal(&mut draws)], time: now }, &scales);
+                }
+                worst = worst.max(goal.q()[0].abs());
+            }
+        }
+        assert!(worst < 10.0 * noise, "{worst}");
+    }
+
+    #[test]
     fn a_jump_is_taken_over_at_once() {
         let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.1], &JointState::at_rest(1), 0.0, 1.0);

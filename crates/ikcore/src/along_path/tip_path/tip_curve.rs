@@ -390,3 +390,43 @@ fn with_position(task: &Task) -> Task {
         _ => Task { tool: None, ..*task },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A straight way whose orientation turns by these steps (rad) about one axis.
+    fn turned_by(steps: &[f64]) -> TipPath {
+        let mut angle = 0.0;
+        let turned = std::iter::once(0.0).chain(steps.iter().map(|step| {
+            angle += step;
+            angle
+        }));
+        let (positions, rotations) = turned
+            .enumerate()
+            .map(|(row, angle)| {
+                let rotation = Rotation3::from_axis_angle(&Vector3::z_axis(), angle).into_inner();
+                ([0.1 * row as f64, 0.0, 0.0], Some(rotation))
+            })
+            .unzip();
+        TipPath::through(&Waypoints::new(positions, rotations).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn coarse_samples_leave_the_turn_between_them_open_and_corners_do_not() {
+        // A parabola with the second difference h rises h / 8 above its chord.
+        assert!((turned_by(&[0.10, 0.11, 0.12, 0.13]).turn_coarseness() - 0.01 / 8.0).abs() < 1e-12);
+        for steps in [[0.1, 0.1, 0.1, 0.1], [0.0, 0.0, 0.1, 0.1], [0.0, 0.0, 0.0, 0.0]] {
+            assert!(turned_by(&steps).turn_coarseness() < 1e-12, "{steps:?}");
+        }
+    }
+
+    #[test]
+    fn a_path_is_taken_literally_unless_its_rows_are_samples() {
+        let literal = turned_by(&[0.10, 0.11, 0.12, 0.13]);
+        assert_eq!(literal.open_turn(), 0.0);
+        let sampled = literal.as_sampled();
+        assert_eq!(sampled.open_turn(), sampled.turn_coarseness());
+        assert_eq!(sampled.part(0.1, 0.9).unwrap().open_turn(), sampled.open_turn());
+    }
+}
