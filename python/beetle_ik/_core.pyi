@@ -4362,6 +4362,9 @@ class MoveReport:
         """What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in
         order of time; empty where it had that speed throughout, and where none is asked for.
         """
+    @property
+    def message(self) -> str:
+        """What the tip does on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests."""
 
 @final
 class SpeedBound:

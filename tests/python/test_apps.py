@@ -169,5 +169,5 @@ def test_wrong_starts_and_targets_are_named(robot: bik.Robot) -> None:
     goal = robot.fk(np.zeros(6))
     with pytest.raises(bik.InvalidInputError, match=r"target is not a rigid transform: R'R differs"):
         solve(robot, goal * [[1.1], [1], [1], [1]], np.zeros(6))
-    with pytest.raises(bik.InvalidInputError, match=r"start must be finite, but joint '.*' is inf"):
+    with pytest.raises(bik.InvalidInputError, match=r"start_q must be finite, but joint '.*' is inf"):
         solve(robot, goal, np.full(6, np.inf))

@@ -191,12 +191,12 @@ MISTAKES: list[Case] = [
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH),
         Invalid,
-        "row 3: start must be finite, but joint 'panda_joint6' is NaN",
+        "row 3: start_q must be finite, but joint 'panda_joint6' is NaN",
     ),
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[3], on_invalid="skip"),
         Invalid,
-        "start must be finite, but joint 'panda_joint6' is NaN",
+        "start_q must be finite, but joint 'panda_joint6' is NaN",
     ),
     (
         lambda: bik.solve_batch(PANDA, [[0, 0, 0], [0, np.inf, 0]]),
@@ -227,7 +227,7 @@ MISTAKES: list[Case] = [
     (
         lambda: bik.solve_batch(PANDA, TARGETS[:4], start_q=HIGH[0, :6]),
         Invalid,
-        "start of robot 'panda': expected 7 joints, got 6",
+        "start_q of robot 'panda': expected 7 joints, got 6",
     ),
     (lambda: bik.solve_batch(PANDA, TARGETS, threads=0), Invalid, "threads must be from 1 to 1024, got 0"),
     (lambda: bik.solve_batch(PANDA, TARGETS, threads=-1), Invalid, "threads must be zero or more, got -1"),

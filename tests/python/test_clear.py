@@ -147,7 +147,7 @@ def test_an_arm_stands_on_a_floor_that_its_foot_may_touch() -> None:
     plan = bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=allowed)
     assert plan.success
     assert plan.clearance >= 1e-3
-    with pytest.raises(bik.InvalidInputError, match=r"start: link 'link_1' is .* into the obstacle's touch$"):
+    with pytest.raises(bik.InvalidInputError, match=r"start_q: link 'link_1' is .* into the obstacle's touch$"):
         bik.plan_point_to_point(ARM, start_q=Q, end_q=Q + 0.1, obstacles=[floor()])
 
 

@@ -99,7 +99,7 @@ def test_a_tilt_is_kept_and_told() -> None:
         (["--tilt", "10deg", "--up", "0,0,0"], "the length of --up must be positive, got 0.0"),
         (
             ["--tilt", "10deg", "--up", "z"],
-            "start: what is to be kept on the way does not hold there: tilt 3.142 rad of at most 0.1745",
+            "--start-q: what is to be kept on the way does not hold there: tilt 3.142 rad of at most 0.1745",
         ),
         (
             ["--tilt", "10deg", "--method", "tpbso"],

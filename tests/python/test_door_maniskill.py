@@ -86,7 +86,7 @@ def test_collisions_are_found_as_in_the_documentation() -> None:
     assert plan.check_for_env_collision(START) == []
     assert {found.link_name2 for found in plan.check_for_env_collision(low)} == {"floor"}
     status = plan.plan_qpos([low], START)["status"]
-    assert status.startswith("RRTConnect Failed. end: link '")
+    assert status.startswith("RRTConnect Failed. end_q: link '")
     assert "inside object 'floor' (Box)" in status
     assert plan.remove_object("floor")
     assert not plan.remove_object("floor")

@@ -78,16 +78,21 @@ def test_the_classes_of_errors() -> None:
             "target must be an array of numbers, got array([1, 1, 1], dtype='timedelta64[s]')",
         ),
         (lambda: solve([0.3, 0.3, np.nan]), Invalid, "target must be finite, but coordinate z is NaN"),
+        (lambda: solve([0.3, 1e300, 0.0]), Invalid, "target: coordinate y must be from -1e100 to 1e100 m, got 1e300"),
         (lambda: solve(np.full((4, 4), np.inf)), Invalid, "target must be finite, but entry (0, 0) is inf"),
         (
             lambda: solve(2 * np.eye(4)),
             Invalid,
             "target is not a rigid transform: its last row is (0, 0, 0, 2), not (0, 0, 0, 1)",
         ),
-        (lambda: solve(start_q=[0.0] * 6), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
+        (lambda: solve(start_q=[0.0] * 6), Invalid, "start_q of robot 'iiwa14': expected 7 joints, got 6"),
         (lambda: solve(start_q=np.zeros((1, 7))), Invalid, "start_q: expected one dimension, got shape (1, 7)"),
-        (lambda: solve(start_q=with_entry(6, np.nan)), Invalid, "start must be finite, but joint 'joint_a7' is NaN"),
-        (lambda: solve(start_q=with_entry(0, -np.inf)), Invalid, "start must be finite, but joint 'joint_a1' is -inf"),
+        (lambda: solve(start_q=with_entry(6, np.nan)), Invalid, "start_q must be finite, but joint 'joint_a7' is NaN"),
+        (
+            lambda: solve(start_q=with_entry(0, -np.inf)),
+            Invalid,
+            "start_q must be finite, but joint 'joint_a1' is -inf",
+        ),
         (
             lambda: solve(solver="BAS"),
             Invalid,
@@ -163,11 +168,11 @@ def test_wrong_solver_options_are_named(call: Callable[[], object], error: type[
             Invalid,
             "dt must be at least 0.0000003 s to cover 3 s in 10 million ticks, got 0.000000000001",
         ),
-        (lambda: track(START[:6]), Invalid, "start of robot 'iiwa14': expected 7 joints, got 6"),
+        (lambda: track(START[:6]), Invalid, "start_q of robot 'iiwa14': expected 7 joints, got 6"),
         (
             lambda: track(START + 9),
             Limit,
-            f"start: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: "
+            f"start_q: joint 'joint_a1' at 9.6449219327 is outside its limits [-{TURN}, {TURN}] by 6.678 rad: "
             f"{TURNED}; {RADIANS}",
         ),
         (lambda: track("home"), Invalid, "start_q must be an array of numbers, got 'home'"),

@@ -165,7 +165,8 @@ def test_a_straight_end_that_breaks_it_is_an_error() -> None:
     with pytest.raises(Invalid) as refused:
         bik.plan_point_to_point(PANDA, start_q=Q, end_q=moved(Q, 0, 1), keep=keep, retreat=0.1)
     assert str(refused.value).startswith(
-        "start cannot be reached: no straight retreat of 0.1000 m: what is to be kept on the way does not hold on it: "
+        "start_q cannot be reached: no straight retreat of 0.1000 m: what is to be kept on the way does not hold "
+        "on it: "
         "deviation in z is 0."
     )
 
@@ -180,7 +181,7 @@ def test_it_holds_from_a_start_velocity() -> None:
     with pytest.raises(bik.InfeasibleError, match=r"^infeasible: at start_qd the arm cannot stop"):
         bik.plan_point_to_point(PANDA, start_qd=[0, 0, 0, 0, 0, 2.0, 0], **options)
     tilted = moved(Q, 5, 0.3)
-    with pytest.raises(Invalid, match=r"^start: .*: tilt 0\.30\d* rad of at most 0\.2000$"):
+    with pytest.raises(Invalid, match=r"^start_q: .*: tilt 0\.30\d* rad of at most 0\.2000$"):
         bik.plan_point_to_point(PANDA, start_qd=[0.1] * 7, **(options | {"start_q": tilted}))
 
 
@@ -244,7 +245,7 @@ def test_an_end_that_breaks_it_says_by_how_much() -> None:
     tipped = moved(Q, 5, 0.3)
     keep = bik.upright(PANDA, tilt=0.2)
     says = "what is to be kept on the way does not hold there: tilt 0.3000 rad of at most 0.2000"
-    for name, ends in {"start": (tipped, Q), "end": (Q, tipped)}.items():
+    for name, ends in {"start_q": (tipped, Q), "end_q": (Q, tipped)}.items():
         with pytest.raises(Invalid) as refused:
             bik.plan_point_to_point(PANDA, start_q=ends[0], end_q=ends[1], keep=keep)
         assert str(refused.value) == f"{name}: {says}"

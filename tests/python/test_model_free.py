@@ -217,7 +217,7 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
         (
             lambda: track(limits=bik.Limits(upper=0.4)),
             bik.LimitError,
-            f"start: joint '0' at 0.5449219327 is outside its limits [-inf, 0.4] by 0.1449 rad: {SLACK}",
+            f"start_q: joint '0' at 0.5449219327 is outside its limits [-inf, 0.4] by 0.1449 rad: {SLACK}",
         ),
         (
             lambda: track(limits=bik.Limits(acceleration=1.0)),
@@ -232,11 +232,11 @@ def answered(target: Any, measured: Any) -> bik.ControlSession:
             "a Sinusoid, or use track_model_free",
         ),
         (lambda: track(dt=0.0), bik.InvalidInputError, "dt must be positive and finite, got 0"),
-        (lambda: track(start=[]), bik.InvalidInputError, "start: expected 1 to 64 joints, got 0"),
+        (lambda: track(start=[]), bik.InvalidInputError, "start_q: expected 1 to 64 joints, got 0"),
         (
             lambda: track(bik.KinematicPlant(IIWA), start=[0.0]),
             bik.InvalidInputError,
-            "start of robot 'iiwa14': expected 7 joints, got 1",
+            "start_q of robot 'iiwa14': expected 7 joints, got 1",
         ),
         (
             lambda: track(controller="znnbas"),

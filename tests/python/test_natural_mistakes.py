@@ -167,12 +167,12 @@ SOLVERS = (
         (
             lambda: bik.Tracker(PANDA, np.full(7, -0.3), dt=0.01),
             Limit,
-            f"start: joint 'panda_joint6' at -0.3 is outside its limits [-0.0175, 3.7525] by 0.2825 rad: {SLACK}",
+            f"start_q: joint 'panda_joint6' at -0.3 is outside its limits [-0.0175, 3.7525] by 0.2825 rad: {SLACK}",
         ),
         (
             lambda: bik.Tracker(PANDA, [0, -40, 0, -135, 0, 90, 45], dt=0.01),
             Limit,
-            f"start: joint 'panda_joint2' at -40 is outside its limits [-1.7628, 1.7628] by 38.24 rad: "
+            f"start_q: joint 'panda_joint2' at -40 is outside its limits [-1.7628, 1.7628] by 38.24 rad: "
             f"move it inside; {RADIANS}",
         ),
         (

@@ -44,7 +44,7 @@ def test_an_end_inside_an_obstacle_is_told_by_name() -> None:
 def test_a_start_in_collision_names_link_obstacle_and_depth() -> None:
     arm = bik.Robot.planar([1.0, 1.0], velocity=1.0).with_capsules(radius=0.01)
     ball = bik.obstacles.Sphere([1.0, 0.0, 0.0], 0.25)
-    depth = r"^start: link 'link_1' is 0\.2600 m inside obstacle 0 \(Sphere\); free_start=True moves out first$"
+    depth = r"^start_q: link 'link_1' is 0\.2600 m inside obstacle 0 \(Sphere\); free_start=True moves out first$"
     with pytest.raises(bik.InvalidInputError, match=depth):
         bik.plan_point_to_point(arm, start_q=[0, 0], end_q=[1, 0], obstacles=[ball])
 

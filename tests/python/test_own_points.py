@@ -177,7 +177,7 @@ def test_a_cloud_at_the_end_alone_may_be_real() -> None:
     away = Q * [-1, 1, 1, 1, 1, 1, 1]
     assert bik.obstacles.clearance(PANDA, away, seen) > 0.0
     said = message(lambda: bik.plan_point_to_point(PANDA, start_q=away, end_q=Q, limits=LIMITS, obstacles=seen))
-    assert said.startswith("end: link 'link_")
+    assert said.startswith("end_q: link 'link_")
     assert "without_robot" not in said
     either = bik.solve(
         PANDA, PANDA.fk(Q), start_q=away, obstacles=[bik.obstacles.PointCloud([PANDA.fk(Q)[:3, 3]], 0.05)]

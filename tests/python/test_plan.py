@@ -149,7 +149,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: between(start=None, start_q=[0, 0, 4]),
-        f"start: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793] by 0.8584 rad: "
+        f"start_q: joint 'joint_3' at 4 is outside its limits [-3.141592653589793, 3.141592653589793] by 0.8584 rad: "
         f"{TURNED}",
     ),
     (lambda: between(start=None, start_q=[0, 0]), "start_q of robot 'planar3': expected 3 joints, got 2"),
@@ -183,7 +183,7 @@ MISTAKES: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: between(start=None, start_q=[0, 0, 0], obstacles=[bik.obstacles.Ellipse((0.8, 0.1), (0.2, 0.2))]),
-        "start: link 'link_1' is 0.1000 m inside obstacle 0 (Ellipse)",
+        "start_q: link 'link_1' is 0.1000 m inside obstacle 0 (Ellipse)",
     ),
     (lambda: along([[1, 1, 0]]), "path: it needs at least 2 points, got 1"),
     (lambda: along([[1, 1, 0], [1, 1, 0]]), "path: point 1 repeats point 0: leave it out"),

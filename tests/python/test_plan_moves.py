@@ -357,9 +357,53 @@ def test_a_line_out_of_reach_says_where() -> None:
     assert "(no configuration has this pose)" in str(caught.value)
 
 
+@pytest.mark.parametrize("yaw", [0.0, 1.0, 2.0])
+def test_a_line_that_leaves_the_reach_says_where_it_ends(yaw: float) -> None:
+    start, end = bik.pose([0.4, -0.1, 0.3], rpy=[0.8, 0.5, yaw]), bik.pose([1.4, 0.0, 0.3], rpy=[0.8, 0.5, yaw])
+    q = bik.solve(UR5, start).q
+    with pytest.raises(Invalid, match=r"^move 0 cannot be reached: .* m along it, no solution") as caught:
+        bik.plan_moves(UR5, [Line(end)], start_q=q, limits=LIMITS)
+    along = float(str(caught.value).split()[5])
+    way = (end - start)[:3, 3] / np.linalg.norm((end - start)[:3, 3])
+
+    def has_solution(length: float) -> bool:
+        place = start.copy()
+        place[:3, 3] += length * way
+        return bik.solve(UR5, place).success
+
+    assert has_solution(along - 0.003)
+    assert not has_solution(along + 0.003)
+    assert not any(has_solution(length) for length in np.linspace(along + 0.01, 1.0, 20))
+
+
+@pytest.mark.parametrize("blend", [1e-12, 1e-9, 9e-6])
+def test_a_blend_below_what_paths_are_kept_to_is_a_stop(blend: float) -> None:
+    program = [Line(shifted(y=0.1), blend=blend), Line(shifted(y=0.1, z=0.1))]
+    plan = bik.plan_moves(UR5, program, start_q=HOME, limits=LIMITS)
+    stopped = bik.plan_moves(UR5, [Line(shifted(y=0.1)), program[1]], start_q=HOME, limits=LIMITS)
+    assert plan.trajectory == stopped.trajectory
+    _, qd, _ = plan.trajectory.at(plan.moves[0].end)
+    assert np.abs(qd).max() < 1e-9
+
+
+def test_reports_say_what_a_move_does() -> None:
+    program = [Line(shifted(y=0.1)), Wait(0.5), Line(shifted(y=0.1), name="nowhere"), Joints(HOME)]
+    plan = bik.plan_moves(UR5, program, start_q=HOME, limits=LIMITS)
+    said = [report.message for report in plan.moves]
+    assert said[1:3] == ["the arm rests", "the arm rests"]
+    assert said[0] == f"up to {plan.moves[0].speed:.4f} m/s between blends"
+    assert repr(plan.moves[1]).endswith(" s, the arm rests>")
+    short = [Line(shifted(y=0.1), blend=0.02), Line(shifted(y=0.1, z=0.04), blend=0.02), Line(shifted(z=0.04))]
+    plan = bik.plan_moves(UR5, short, start_q=HOME, limits=LIMITS)
+    assert [report.message for report in plan.moves][1] == "wholly in blends"
+    assert plan.moves[1].speed == 0.0
+
+
 def test_a_joint_that_meets_its_limit_is_named() -> None:
     narrow = UR5.with_limits(lower=HOME - 0.2, upper=HOME + 0.2)
     with pytest.raises(Invalid, match=r"a motion along move 0 was not found: .* joint 'shoulder_pan_joint' would have"):
+        bik.plan_moves(narrow, [Line(shifted(y=0.3))], start_q=HOME, limits=LIMITS)
+    with pytest.raises(Invalid, match=r"; no other configuration helps: 0.* m along it, no solution \(all 8"):
         bik.plan_moves(narrow, [Line(shifted(y=0.3))], start_q=HOME, limits=LIMITS)
 
 

@@ -71,6 +71,7 @@ def test_only_the_line_may_touch() -> None:
     allowed = [bik.obstacles.Box((0.5, 0.2, 0.1), (0.05, 0.05, 0.2), touch=["link_7"]), TABLE]
     assert bik.obstacles.clearance(ARM, q, allowed).min() >= 0.005
     assert plan.clearance >= 0.005
+    assert f", {plan.clearance:.4g} m clear of everything; what its straight ends may touch is left" in plan.message
 
 
 def test_a_retreat_lifts_the_part() -> None:
@@ -113,7 +114,7 @@ def test_a_start_in_contact_moves_out_first() -> None:
     end = READY + 0.9 * TURN
     begun = bik.obstacles.clearance(BARE, READY, [DEEP])
     assert begun < 0.0
-    with pytest.raises(bik.InvalidInputError, match=r"^start: link '.*; free_start=True moves out first$"):
+    with pytest.raises(bik.InvalidInputError, match=r"^start_q: link '.*; free_start=True moves out first$"):
         to(BARE, end_q=end, obstacles=[DEEP])
     plan = to(BARE, end_q=end, obstacles=[DEEP], free_start=True)
     assert plan.success, plan.message

@@ -135,3 +135,25 @@ def test_mistakes_are_named() -> None:
         bik.plan_along_path(robot, far, limits=ACCELERATION)
     with pytest.raises(bik.InfeasibleError, match=r"^infeasible: start_q has the tip .* m from the path's first point"):
         bik.plan_along_path(robot, circle(False), start_q=np.full(7, 0.5), limits=ACCELERATION)
+
+
+def test_poses_sampled_from_a_curve_are_followed_for_many_turns() -> None:
+    """Between samples 0.3 rad apart the shortest turn is up to 1e-2 rad off the curve, far more than the positions are."""
+    turn, height = np.linspace(0.0, 60.0 * np.pi, 600), np.linspace(0.0, 0.2, 600)
+    out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+    tool = -np.array([0.0, 0.0, 1.0]) - 0.5 * out
+    tool /= np.linalg.norm(tool, axis=1, keepdims=True)
+    across = np.array([1.0, 0.0, 0.0]) - tool[:, :1] * tool
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    poses = np.tile(np.eye(4), (len(turn), 1, 1))
+    poses[:, :3, :3] = np.stack([across, np.cross(tool, across), tool], axis=2)
+    poses[:, :3, 3] = np.array([0.45, 0.0, 0.05]) + 0.06 * out + height[:, None] * np.array([0.0, 0.0, 1.0])
+    robot = bik.Robot.named("ur5e").with_tool(bik.pose([0.0, 0.0, 0.10]))
+    plan = bik.plan_along_path(robot, poses, limits=bik.Limits(acceleration=5.0))
+    assert plan.success, plan.message
+    q = plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, 2000))[0]
+    reached = robot.fk(q)
+    # The direction of the tool: a cone about the vertical.
+    assert np.abs(reached[:, 2, 2] + 1.0 / np.hypot(1.0, 0.5)).max() < 1e-2
+    radius = np.hypot(reached[:, 0, 3] - 0.45, reached[:, 1, 3])
+    assert np.abs(radius - 0.06).max() < 2e-3

@@ -220,7 +220,8 @@ def test_an_end_outside_is_refused_with_the_remedy() -> None:
     with pytest.raises(bik.LimitError) as caught:
         bik.plan_point_to_point(PANDA, start_q=INSIDE, end_q=below(0.05), limits=LIMITS)
     assert str(caught.value) == (
-        f"end: joint 'panda_joint2' at -1.8128 is outside its limits [-1.7628, 1.7628] by 0.05000 rad: {INSIDE_ADVICE}"
+        "end_q: joint 'panda_joint2' at -1.8128 is outside its limits [-1.7628, 1.7628] by 0.05000 rad: "
+        f"{INSIDE_ADVICE}"
     )
 
 
@@ -342,11 +343,11 @@ REFUSED = f"joint 'panda_joint2' at -1.9627999999999999 is outside its limits [-
 
 @told(
     [
-        (lambda: bik.Tracker(PANDA, below(0.2), dt=DT), Limit, f"start: {REFUSED}"),
+        (lambda: bik.Tracker(PANDA, below(0.2), dt=DT), Limit, f"start_q: {REFUSED}"),
         (
             lambda: bik.plan_point_to_point(PANDA, start_q=below(0.2), end_q=INSIDE, limits=LIMITS),
             Limit,
-            f"start: {REFUSED}",
+            f"start_q: {REFUSED}",
         ),
         (
             lambda: bik.plan_along_path(PANDA, np.eye(3), start_q=below(0.2), limits=LIMITS),
@@ -356,13 +357,13 @@ REFUSED = f"joint 'panda_joint2' at -1.9627999999999999 is outside its limits [-
         (
             lambda: bik.Tracker(PANDA, below(1e-3), dt=DT, start_slack=0.0),
             Limit,
-            "start: joint 'panda_joint2' at -1.7637999999999998 is outside its limits [-1.7628, 1.7628] by "
+            "start_q: joint 'panda_joint2' at -1.7637999999999998 is outside its limits [-1.7628, 1.7628] by "
             f"1.000e-3 rad: {SLACK}",
         ),
         (
             lambda: bik.Tracker(PANDA, np.radians([350.0, 0, 0, -90, 0, 90, 45]), dt=DT),
             Limit,
-            "start: joint 'panda_joint1' at 6.1086523819801535 is outside its limits [-2.8973, 2.8973] by 3.211 rad: "
+            "start_q: joint 'panda_joint1' at 6.1086523819801535 is outside its limits [-2.8973, 2.8973] by 3.211 rad: "
             + TURNED,
         ),
         (

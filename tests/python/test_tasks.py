@@ -296,7 +296,7 @@ def solve(**options: object) -> bik.Solution:
         (
             lambda: bik.solve_all(IIWA, POSE, start_q=with_entry(1, np.nan)),
             Invalid,
-            "start must be finite, but joint 'joint_a2' is NaN",
+            "start_q must be finite, but joint 'joint_a2' is NaN",
         ),
         (lambda: IIWA.clip([0.0] * 3), Invalid, "joint angles of robot 'iiwa14': expected 7 joints, got 3"),
     ]

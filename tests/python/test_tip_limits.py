@@ -240,10 +240,10 @@ Limit, Invalid, Unsupported = bik.LimitError, bik.InvalidInputError, bik.Unsuppo
 MESSAGES = {
     "number": "tip_speed must be a number, or a dict of numbers by tip, got 'fast'",
     "timing": "time_optimal cannot honour tip speed limits: give the robot whose tips they are",
-    "solve": "solve cannot honour tip speed limits: a single configuration has no motion",
-    "states": "state_to_state cannot honour tip turn speed limits: each joint has its own time; "
-    "plan_point_to_point keeps them",
-    "track": "track cannot honour tip acceleration limits: a plan keeps them",
+    "solve": "solve cannot honour tip speed limits: plan a motion, because a single configuration has none",
+    "states": "state_to_state cannot honour tip turn speed limits: use plan_point_to_point, "
+    "because here each joint has its own time",
+    "track": "Tracker cannot honour tip acceleration limits: plan the motion, which keeps them",
 }
 REFUSED = [
     (lambda: api.Limits(tip_speed=0), Limit, f"tip_speed is 0: {NO_LIMIT}"),

@@ -148,7 +148,8 @@ def test_planned_motions_keep_torques_and_go_round_what_cannot_be_held() -> None
 
 def test_an_end_that_cannot_be_held_is_refused_by_joint_and_torque() -> None:
     with pytest.raises(
-        bik.InfeasibleError, match=r"^infeasible: at end joint 'j1' needs 23.57 N m to hold the arm, its limit is 20.00"
+        bik.InfeasibleError,
+        match=r"^infeasible: at end_q joint 'j1' needs 23.57 N m to hold the arm, its limit is 20.00",
     ):
         bik.plan_point_to_point(
             ROBOT, start_q=[0, -1.5, 0, 0, 0], end_q=[0, 0, 0, 0, 0], limits=limits([60, 20, 35, 60, 5])

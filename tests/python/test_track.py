@@ -153,7 +153,7 @@ def test_a_start_outside_its_limits_is_refused() -> None:
     with pytest.raises(bik.LimitError) as caught:
         bik.track(IIWA, CIRCLE, start, dt=DT)
     assert str(caught.value) == (
-        f"start: joint 'joint_a4' at -2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953] by "
+        f"start_q: joint 'joint_a4' at -2.5 is outside its limits [-2.0943951023931953, 2.0943951023931953] by "
         f"0.4056 rad: {SLACK}"
     )
 

@@ -1,5 +1,6 @@
 """One control loop, one call a tick: the same as `track`, step by step."""
 
+import copy
 import itertools
 import pickle
 
@@ -50,6 +51,36 @@ def test_a_target_out_of_reach_keeps_the_best() -> None:
     last = tracker.step([3.0, 0.0, 0.5])
     assert last.status == bik.Status.CAPPED
     assert "no nearer than in the tick before" in last.message
+
+
+def test_an_arm_without_a_target_says_so() -> None:
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.01, limits=bik.Limits(velocity=1.0, acceleration=5.0), timeout=0.1)
+    assert tracker.step(None).message == "no target yet: the arm comes to rest and waits for one"
+    tracker.step([0.4, 0.3, 0.8])
+    tracker.stop()
+    *_, stopped = (tracker.step(None) for _ in range(60))
+    distance = f"{stopped.position_error:.4f} m away from the last target"
+    assert stopped.message == f"stopped by stop(), {distance}: the next target makes it go on"
+    tracker.step([0.4, 0.3, 0.8])
+    *_, late = (tracker.step(None) for _ in range(60))
+    distance = f"{late.position_error:.4f} m away from the last target"
+    waits = "the arm comes to rest and waits for the next one"
+    assert late.message == f"no target for 0.1000 s, {distance}: {waits}"
+    assert pickle.loads(pickle.dumps(late)).message == late.message
+
+
+def test_a_tracker_is_not_pickled_but_made_again() -> None:
+    tracker = bik.Tracker(IIWA, ON_CIRCLE, dt=0.01)
+    said = (
+        "a Tracker is a loop in progress, which cannot be pickled or copied: keep its arguments and make another "
+        "one, then reset it to q and qd of the last step"
+    )
+    for act in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match=f"^{said}$"):
+            act(tracker)
+    session = bik.BroydenBAS().session(ON_CIRCLE, dt=0.01)
+    with pytest.raises(TypeError, match=r"^a ControlSession is a loop in progress, .* begin another one at the q of"):
+        pickle.dumps(session)
 
 
 def test_reset_begins_again_with_the_same_bits() -> None:

@@ -183,13 +183,13 @@ def test_dry_friction_at_rest_holds_no_arm_back() -> None:
 def test_wrong_calls_are_refused_by_name() -> None:
     rated = bik.Limits(acceleration=RATED, torque=PANDA.torque_limit)
     with pytest.raises(
-        bik.UnsupportedLimit, match=r"^track cannot honour torque limits: joint 'panda_joint1' may change"
+        bik.UnsupportedLimit, match=r"^Tracker cannot honour torque limits: joint 'panda_joint1' may change"
     ):
         bik.Tracker(PANDA, READY, dt=0.01, limits=bik.Limits(torque=50.0))
     with pytest.raises(bik.InvalidInputError, match="robot 'ur5e' has no dynamics: no link has a mass"):
         bik.Tracker(bik.Robot.named("ur5e"), np.ones(6), dt=0.01, limits=bik.Limits(acceleration=5.0, torque=50.0))
     with pytest.raises(
-        bik.InfeasibleError, match=r"^infeasible: at start joint 'panda_joint4' needs .* N m to hold the arm, its"
+        bik.InfeasibleError, match=r"^infeasible: at start_q joint 'panda_joint4' needs .* N m to hold the arm, its"
     ):
         bik.Tracker(PANDA, READY, dt=0.01, limits=bik.Limits(acceleration=RATED, torque=1.0))
     tracker = bik.Tracker(PANDA, READY, dt=0.01, limits=rated)

@@ -212,7 +212,7 @@ pub enum Error {
     /// A configuration outside the position limits.
     #[error("{what}: joint '{joint}' at {} is outside its limits [{}, {}] {excess}", given(*.value), given(*.lower), given(*.upper))]
     OutsideLimits {
-        /// Name of the argument, for example "start".
+        /// Name of the argument, for example "start_q".
         what: Message,
         /// The joint's name.
         joint: String,
@@ -228,7 +228,7 @@ pub enum Error {
     /// A configuration that puts the tip outside its region.
     #[error("{what}: {coordinate} of the tip, {value} m, is outside its region ({lower}, {upper})")]
     OutsideRegion {
-        /// Name of the argument, for example "start".
+        /// Name of the argument, for example "start_q".
         what: String,
         /// The coordinate, in the base's frame.
         coordinate: String,
@@ -344,7 +344,7 @@ pub enum Error {
     /// A start or end in collision.
     #[error("{what}: link '{link}' is {depth} {other}{remedy}")]
     InCollision {
-        /// Name of the argument, for example "start".
+        /// Name of the argument, for example "start_q".
         what: String,
         /// Name of the link.
         link: String,

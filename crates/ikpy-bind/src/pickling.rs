@@ -1,6 +1,7 @@
 //! Pickling: `__reduce__` returns the static method that restores a value, and its arguments.
 
 use pyo3::PyTypeInfo;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
@@ -20,6 +21,13 @@ pub fn restored_from<'py, T: PyTypeInfo>(
 /// Converts the byte form of a core value to Python bytes.
 pub fn bytes(py: Python<'_>, stored: ikcore::Result<Vec<u8>>) -> PyResult<Bound<'_, PyBytes>> {
     Ok(PyBytes::new(py, &stored.map_err(raise)?))
+}
+
+/// The error of `__reduce__` of a loop in progress, an object of this class; `another` says how to make one like it.
+pub fn in_progress(class: &str, another: &str) -> PyErr {
+    PyTypeError::new_err(format!(
+        "a {class} is a loop in progress, which cannot be pickled or copied: keep its arguments and {another}"
+    ))
 }
 
 /// Gives a frozen class that wraps one core value its hash and its pickling; `what` names it in the error of bytes that are no such value.

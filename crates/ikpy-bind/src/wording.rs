@@ -25,6 +25,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::JointWeights => "joint_weights",
         Setting::AllTurns => "turns=True",
         Setting::RaiseInvalid => "use on_invalid=\"raise\"",
+        Setting::Session => "Tracker",
         Setting::Ease => "ease=True",
         Setting::Recover => "recover=True",
         Setting::FreeStart => "free_start=True",

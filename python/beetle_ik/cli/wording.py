@@ -1,5 +1,7 @@
 """Messages in the words of the command line: its options in place of the keywords of Python."""
 
+import re
+
 _OPTIONS = {
     **{f"limits=Limits({kind}=...)": f"--{kind}-limit" for kind in ("velocity", "acceleration", "jerk")},
     "limits=Limits(tip_speed=...)": "--tip-speed",
@@ -31,7 +33,7 @@ _OPTIONS = {
 
 def in_options(text: object) -> str:
     """Returns a message of the library with options where it names keywords that have one."""
-    message = str(text)
+    message = re.sub(r"(?<![-\w])(start|end)_q\b", r"--\1-q", str(text))
     for keyword, option in _OPTIONS.items():
         message = message.replace(keyword, option)
     return message

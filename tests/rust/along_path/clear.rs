@@ -261,7 +261,7 @@ fn mistakes_along_a_path_are_named() {
     let ball = || vec![Shape::sphere([0.0, 0.0, 0.6], 0.3).unwrap()];
     let start = AlongPathOptions { start: Some(Q.to_vec()), ..options(&robot, ball()) };
     let says = refused(&robot, &tip_path, &start);
-    assert!(says.starts_with("start: link '") && says.ends_with(" m inside obstacle 0 (Sphere)"), "{says}");
+    assert!(says.starts_with("start_q: link '") && says.ends_with(" m inside obstacle 0 (Sphere)"), "{says}");
     let bare = Robot::named("panda").unwrap();
     let says = refused(&bare, &tip_path, &options(&bare, ball()));
     assert!(

@@ -171,7 +171,7 @@ fn contacts_are_allowed_on_the_line_alone() {
     let said = |line| plan_point_to_point(&robot, &start, &ends, &with(line), &mut Unattended).unwrap_err().to_string();
     let untouched = said(StraightLine { touch: vec![], ..approach.clone() });
     assert!(
-        untouched.starts_with("end cannot be reached: no straight approach of 0.1200 m: link 'link_7' is 0.0"),
+        untouched.starts_with("end_q cannot be reached: no straight approach of 0.1200 m: link 'link_7' is 0.0"),
         "{untouched}"
     );
     let unknown = vec![LineContact { obstacle: None, links: vec!["hand".into()] }];

@@ -290,7 +290,7 @@ fn wrong_rows_are_named() {
     assert!(text.starts_with("row 3: target is not a rigid transform: R'R differs from the identity by "), "{text}");
     targets[3] = targets[1];
     starts[4 * robot.dof() + 2] = NAN;
-    assert_eq!(says(&targets, &starts), "row 4: start must be finite, but joint 'panda_joint3' is NaN");
+    assert_eq!(says(&targets, &starts), "row 4: start_q must be finite, but joint 'panda_joint3' is NaN");
     let says = "starts: expected 42 numbers, 6 rows (one per target) of 7 joints, got 35";
     let options = BatchOptions { starts: Some(&starts[..35]), ..BatchOptions::default() };
     assert_eq!(message(solve_batch(&robot, Targets::Poses(&targets), &options, &mut Unattended)), says);
@@ -309,7 +309,7 @@ fn what_all_rows_fraction_is_refused_even_where_rows_are_skipped() {
     assert_eq!(says(on_threads(0)), "threads must be from 1 to 1024, got 0");
     assert_eq!(says(on_threads(1025)), "threads must be from 1 to 1024, got 1025");
     let each = SolveOptions { start: Some(vec![0.0; 6]), ..SolveOptions::default() };
-    assert_eq!(says(BatchOptions { each, ..on_threads(1) }), "start of robot 'panda': expected 7 joints, got 6");
+    assert_eq!(says(BatchOptions { each, ..on_threads(1) }), "start_q of robot 'panda': expected 7 joints, got 6");
     let each = SolveOptions { stop: Stop { max_evaluations: 0, ..Stop::default() }, ..SolveOptions::default() };
     assert_eq!(says(BatchOptions { each, ..on_threads(1) }), "max_evaluations must be at least 1, got 0");
     let says = "on_invalid must be one of 'raise', 'skip', got 'ignore'";

@@ -53,9 +53,9 @@ fn a_wrong_number_of_joint_positions_is_named() {
     assert_eq!(message(iiwa.fk(&[0.0; 6])), says);
     assert_eq!(message(iiwa.jacobian(&[0.0; 6])), says);
     assert_eq!(message(iiwa.link_poses(&[0.0; 6])), says);
-    let says = "start of robot 'iiwa14': expected 7 joints, got 0";
+    let says = "start_q of robot 'iiwa14': expected 7 joints, got 0";
     assert_eq!(solve_says(SolveOptions { start: Some(vec![]), ..SolveOptions::default() }), says);
-    let says = "start of robot 'planar5': expected 5 joints (joint_1 to joint_5), got 7";
+    let says = "start_q of robot 'planar5': expected 5 joints (joint_1 to joint_5), got 7";
     assert_eq!(track_says(&[0.0; 7], TrackOptions::default()), says);
 }
 
@@ -66,20 +66,20 @@ fn joint_positions_that_are_not_finite_are_named() {
     assert_eq!(message(iiwa.fk(&q(NAN))), "joint angles must be finite, but joint 'joint_a3' is NaN");
     assert_eq!(message(iiwa.jacobian(&q(INFINITE))), "joint angles must be finite, but joint 'joint_a3' is inf");
     assert_eq!(message(iiwa.link_poses(&q(-INFINITE))), "joint angles must be finite, but joint 'joint_a3' is -inf");
-    let says = "start must be finite, but joint 'joint_a3' is NaN";
+    let says = "start_q must be finite, but joint 'joint_a3' is NaN";
     assert_eq!(solve_says(SolveOptions { start: Some(q(NAN).to_vec()), ..SolveOptions::default() }), says);
-    let says = "start must be finite, but joint 'joint_3' is NaN";
+    let says = "start_q must be finite, but joint 'joint_3' is NaN";
     assert_eq!(track_says(&[0.0, 0.0, NAN, 0.0, 0.0], TrackOptions::default()), says);
 }
 
 #[test]
 fn starts_outside_their_limits_are_named() {
     let says = format!(
-        "start: joint 'joint_1' at -4 is outside its limits [{}, {PI}] by 0.8584 rad: whole turns taken off bring it inside",
+        "start_q: joint 'joint_1' at -4 is outside its limits [{}, {PI}] by 0.8584 rad: whole turns taken off bring it inside",
         -PI
     );
     assert_eq!(track_says(&[-4.0, 0.0, 0.0, 0.0, 0.0], TrackOptions::default()), says);
-    let says = "start: joint 'joint_1' at 0 is outside its limits [0.1, 3.141592653589793] by 0.1000 rad: moving it to the limit \
+    let says = "start_q: joint 'joint_1' at 0 is outside its limits [0.1, 3.141592653589793] by 0.1000 rad: moving it to the limit \
                 changes the pose; start slack takes a start farther out";
     assert_eq!(track_says(&[0.0; 5], within(Field::Lower, Profile::Constant(0.1))), says);
 }

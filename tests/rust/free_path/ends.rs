@@ -108,7 +108,7 @@ fn ends_that_cannot_be_reached_are_passed_over_unless_all_are() {
         assert!(
             said.starts_with("none of the 2 ends can be reached: end[0]: the nearest configuration found stays 2.1")
                 && said.ends_with(
-                    "away; end[1]: joint 'panda_joint1' at 9 is outside its limits [-2.8973, 2.8973] by 6.103 rad: \
+                    "away; end_q[1]: joint 'panda_joint1' at 9 is outside its limits [-2.8973, 2.8973] by 6.103 rad: \
                                    whole turns taken off bring it inside"
                 ),
             "{said}"
@@ -119,13 +119,13 @@ fn ends_that_cannot_be_reached_are_passed_over_unless_all_are() {
     assert_eq!(plan.chosen_end, Some(1));
     let said = refused(&robot, &[hitting.clone(), hitting.clone()], &among);
     let one = refused(&robot, &[hitting], &among);
-    assert!(one.starts_with("end: link '"), "{one}");
+    assert!(one.starts_with("end_q: link '"), "{one}");
     assert_eq!(
         said,
         format!(
             "none of the 2 ends can be reached: {}; {}",
-            one.replacen("end", "end[0]", 1),
-            one.replacen("end", "end[1]", 1)
+            one.replacen("end_q", "end_q[0]", 1),
+            one.replacen("end_q", "end_q[1]", 1)
         )
     );
 }

@@ -346,11 +346,11 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         refused(&thin, &here, &there, with(vec![ball.clone()], &thin)),
-        "start: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere); free_start moves out first"
+        "start_q: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere); free_start moves out first"
     );
     assert_eq!(
         refused(&thin, &there, &here, with(vec![ball.clone()], &thin)),
-        "end: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
+        "end_q: link 'link_1' is 0.2600 m inside obstacle 0 (Sphere)"
     );
     assert_eq!(
         refused(&arm, &here, &position(3.0, 0.0), with(vec![], &arm)),

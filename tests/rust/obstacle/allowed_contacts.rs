@@ -167,7 +167,7 @@ fn plans_take_an_obstacle_that_a_link_may_touch() {
     };
     assert_eq!(
         plan(&["link_1"]).unwrap_err().to_string(),
-        "start: link 'base' is 0.08000 m inside obstacle 0 (HalfSpace); if the robot stands there, put 'base' \
+        "start_q: link 'base' is 0.08000 m inside obstacle 0 (HalfSpace); if the robot stands there, put 'base' \
          into the obstacle's touch"
     );
     assert!(plan(&["base", "link_1"]).unwrap().violations.is_empty());

@@ -221,7 +221,7 @@ fn what_cannot_be_guaranteed_is_refused() {
          give numbers, or leave region out"
     );
     let Target::Position([.., z]) = position_at(&iiwa, &Q) else { panic!("a position") };
-    assert_eq!(says(own(), &Q, 0.5), format!("start: z of the tip, {z} m, is outside its region (-inf, 0.5)"));
+    assert_eq!(says(own(), &Q, 0.5), format!("start_q: z of the tip, {z} m, is outside its region (-inf, 0.5)"));
 }
 
 #[test]

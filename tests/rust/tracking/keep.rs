@@ -205,7 +205,7 @@ fn a_start_that_breaks_a_constraint_is_refused_with_its_error() {
     let error = Session::new(&robot, &START, 0.01, &options).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "start: what is to be kept on the way does not hold there: tilt 0.2500 rad of at most 0.1000"
+        "start_q: what is to be kept on the way does not hold there: tilt 0.2500 rad of at most 0.1000"
     );
     let mut session = session(&robot, &START, 0.01, Limits::of(&robot), vec![upright(&home, 0.1).0]);
     let mut away = START;

@@ -494,10 +494,10 @@ fn wrong_input_is_named() {
         "antenna_length must be positive and finite, got 0"
     );
     let outside = [3.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let limits = "start: joint 'joint_a1' at 3.2 is outside its limits [-2.9670597283903604, 2.9670597283903604] by 0.2329 rad: \
+    let limits = "start_q: joint 'joint_a1' at 3.2 is outside its limits [-2.9670597283903604, 2.9670597283903604] by 0.2329 rad: \
                   moving it to the limit changes the pose; start slack takes a start farther out";
     assert_eq!(run(Controller::default(), &outside), limits);
     let none = ModelFreeOptions::default();
     let no_joints = track_model_free(&mut exact_plant(), &circle(), &[], &none, &mut Unattended);
-    assert_eq!(message(no_joints), "start: expected 1 to 64 joints, got 0");
+    assert_eq!(message(no_joints), "start_q: expected 1 to 64 joints, got 0");
 }

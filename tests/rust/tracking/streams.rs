@@ -8,7 +8,7 @@ use ikcore::rng::{self, LazyRng};
 use ikcore::robot::Robot;
 use ikcore::solver::Unattended;
 use ikcore::task::{Target, Twist};
-use ikcore::tracking::{Arrival, LowPass, OneEuro, Session, TargetFilter, TrackOptions};
+use ikcore::tracking::{Arrival, Idle, LowPass, OneEuro, Session, TargetFilter, TrackOptions};
 
 const START: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
 
@@ -238,6 +238,37 @@ fn without_targets_the_arm_stops_after_the_timeout() {
     assert!(speed(&session) < 1e-12, "{}", speed(&session));
     session.step(&Target::Position([0.2, 0.5, 0.5]), &mut Unattended).unwrap();
     assert!(speed(&session) > 0.0, "a target ends the stop");
+}
+
+#[test]
+fn an_arm_without_a_target_says_so() {
+    let arm = robot("panda");
+    let options = TrackOptions { limits: Some(moderate(&arm, 50.0)), timeout: Some(0.1), ..TrackOptions::default() };
+    let mut session = Session::new(&arm, &START, 0.01, &options).unwrap();
+    let said = |session: &mut Session, ticks: usize| {
+        let steps = (0..ticks).map(|_| session.advance(None, &mut Unattended).unwrap());
+        let last = steps.last().unwrap();
+        (last.idle, last.message().to_string())
+    };
+    let waits = "no target yet: the arm comes to rest and waits for one";
+    assert_eq!(said(&mut session, 1), (Some(Idle::NoTarget), waits.into()));
+    assert_eq!(said(&mut session, 30), (Some(Idle::NoTarget), waits.into()), "a timeout before the first target");
+    let target = Target::Position([0.2, 0.5, 0.5]);
+    let step = session.step(&target, &mut Unattended).unwrap();
+    assert_eq!(step.idle, None);
+    let (idle, late) = said(&mut session, 100);
+    assert_eq!(idle, Some(Idle::TimedOut(0.1)));
+    assert!(late.starts_with("no target for 0.1000 s, ") && !late.contains("NaN"), "{late}");
+    assert!(late.ends_with(" m away from the last target: the arm comes to rest and waits for the next one"), "{late}");
+    session.step(&target, &mut Unattended).unwrap();
+    session.stop();
+    let (idle, stopped) = said(&mut session, 100);
+    assert_eq!(idle, Some(Idle::Stopped));
+    assert!(stopped.starts_with("stopped by stop(), "), "{stopped}");
+    assert!(stopped.ends_with(" m away from the last target: the next target makes it go on"), "{stopped}");
+    session.reset(&START, None, None).unwrap();
+    session.stop();
+    assert_eq!(said(&mut session, 1).1, "stopped by stop(): the next target makes it go on");
 }
 
 #[test]

@@ -348,7 +348,7 @@ fn what_cannot_be_kept_is_refused_by_name() {
     let weak = limits(&robot, None, vec![1.0; 7]);
     let error = refused(&robot, weak);
     assert!(matches!(error, Error::Infeasible { .. }), "{error}");
-    assert!(error.to_string().starts_with("infeasible: at start joint 'panda_joint4' needs "), "{error}");
+    assert!(error.to_string().starts_with("infeasible: at start_q joint 'panda_joint4' needs "), "{error}");
     let mut session = session(&robot, 0.01, limits(&robot, None, motors(&robot, 1.0)));
     let error = session.set_robot(&Robot::named("ur5e").unwrap()).unwrap_err();
     assert!(matches!(error, Error::Contradiction { .. }), "{error}");

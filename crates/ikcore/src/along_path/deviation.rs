@@ -54,7 +54,7 @@ impl Largest {
     }
 }
 
-/// The largest deviations of the tip from its path, beyond its tolerance band.
+/// The largest deviations of the tip from its path, beyond its tolerance band and the turn that the path leaves open.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LargestDeviation {
     /// Distance from the path (m).
@@ -66,14 +66,17 @@ pub(crate) struct LargestDeviation {
 impl LargestDeviation {
     /// Returns the violations for a tip that must stay within `accuracy` (m, rad).
     pub(crate) fn violations(&self, tip_path: &TipPath, accuracy: f64) -> impl Iterator<Item = Violation> {
-        let of = |quantity: &str, largest: Largest, unit: &'static str| {
+        let of = |quantity: &str, largest: Largest, open: f64, unit: &'static str| {
             let tolerance_band = if tip_path.has_tolerance() { ", beyond its tolerance," } else { "" };
             let what =
                 format!("{quantity} of the tip{tolerance_band} from {}", tip_path.point_in_words(largest.fraction));
             let broken = largest.value > accuracy;
-            broken.then(|| Violation { what, value: largest.value, bound: accuracy, unit: unit.into() })
+            let [value, bound] = [largest.value, accuracy].map(|off| off + open);
+            broken.then(|| Violation { what, value, bound, unit: unit.into() })
         };
-        [of("distance", self.distance, "m"), of("turn", self.angle, "rad")].into_iter().flatten()
+        let (distance, angle) =
+            (of("distance", self.distance, 0.0, "m"), of("turn", self.angle, tip_path.open_turn(), "rad"));
+        [distance, angle].into_iter().flatten()
     }
 }
 
@@ -85,7 +88,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
             let none = Largest { value: -1.0, fraction: from };
             (0..=SAMPLES).fold([none; 2], |largest, i| {
                 let fraction = from + (to - from) * i as f64 / SAMPLES as f64;
-                let parts = self.parts_between(fraction, [from, to]);
+                let parts = self.beyond(self.parts_between(fraction, [from, to]));
                 std::array::from_fn(|part| largest[part].or_larger(Largest { value: parts[part], fraction }))
             })
         };
@@ -96,7 +99,8 @@ impl<C: Configurations> TipDeviation<'_, C> {
             let near = knots.windows(2).zip(&sampled).filter(|(_, largest)| is_near(largest));
             near.fold(sampled[0][part], |largest, (ends, best)| {
                 let ends = [ends[0], ends[1]];
-                largest.or_larger(peak(ends, best[part], |fraction| self.parts_between(fraction, ends)[part]))
+                largest
+                    .or_larger(peak(ends, best[part], |fraction| self.beyond(self.parts_between(fraction, ends))[part]))
             })
         });
         LargestDeviation { distance, angle }
@@ -107,9 +111,9 @@ impl<C: Configurations> TipDeviation<'_, C> {
         self.parts_between(fraction, [fraction; 2])
     }
 
-    /// The larger of the two.
+    /// The larger of the two, beyond the turn that the path leaves open.
     pub(crate) fn at(&self, fraction: f64) -> f64 {
-        let [distance, angle] = self.parts_at(fraction);
+        let [distance, angle] = self.beyond(self.parts_at(fraction));
         distance.max(angle)
     }
 
@@ -120,26 +124,34 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(fraction, q);
         let due = self.tip_path.path_target(fraction);
-        if let Some([distance, angle]) = due.excess(|| self.robot.tip(q)) {
+        if let Some(parts) = due.excess(|| self.robot.tip(q)) {
+            let [distance, angle] = self.beyond(parts);
             return distance.max(angle);
         }
         let (tip, wanted) = (self.robot.tip_position(q), due.target.position().unwrap_or_default());
         let distance = norm(&std::array::from_fn(|k| tip[k] - wanted[k]));
-        distance.max(angle_between(&due.target, || self.robot.tip(q)))
+        let [distance, angle] = self.beyond([distance, angle_between(&due.target, || self.robot.tip(q))]);
+        distance.max(angle)
     }
 
-    /// The largest [`at`](Self::at) at `samples` parameters between two path parameters, each of whose configurations `visit` is told.
-    pub(crate) fn between(&self, [from, to]: [f64; 2], samples: usize, mut visit: impl FnMut(&[f64])) -> f64 {
-        let at = |i: usize| from + (to - from) * i as f64 / (samples + 1) as f64;
+    /// Whether `is_too_much` of the configuration and what [`at`](Self::at) is there, at one of `samples` parameters between two others. It
+    /// begins in the middle, where a spline is farthest from its path.
+    pub(crate) fn any_between(
+        &self,
+        [from, to]: [f64; 2],
+        samples: usize,
+        is_too_much: impl Fn(&[f64], f64) -> bool,
+    ) -> bool {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
-        let mut off = |fraction: f64| {
+        let mut visit = |i: usize| {
+            let fraction = from + (to - from) * i as f64 / (samples + 1) as f64;
             (self.configurations)(fraction, q);
-            visit(q);
-            let [distance, angle] = self.parts_of(fraction, q, [from, to]);
-            distance.max(angle)
+            let [distance, angle] = self.beyond(self.parts_of(fraction, q, [from, to]));
+            is_too_much(q, distance.max(angle))
         };
-        (1..=samples).map(|i| off(at(i))).fold(0.0, f64::max)
+        let half = samples.div_ceil(2);
+        (half..=samples).chain(1..half).any(&mut visit)
     }
 
     fn parts_between(&self, fraction: f64, ends: [f64; 2]) -> [f64; 2] {
@@ -147,6 +159,11 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(fraction, q);
         self.parts_of(fraction, q, ends)
+    }
+
+    /// What counts of a distance and an angle: that beyond the turn which the path leaves open.
+    fn beyond(&self, [distance, angle]: [f64; 2]) -> [f64; 2] {
+        [distance, (angle - self.tip_path.open_turn()).max(0.0)]
     }
 
     /// The distance (m) at a configuration from the part of the path around `fraction` that extends one interval before `from` and after

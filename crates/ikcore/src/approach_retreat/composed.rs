@@ -92,7 +92,7 @@ impl<'a> Pieces<'a> {
         let clearance = space.clearance(q).distance;
         let Some(out) = way_out(&space, self.limits, q)? else {
             // Names the two bodies.
-            refuse_collision("start", &space.narrowed(-END_RESERVE), q)?;
+            refuse_collision(&EndName::Start.of_configuration(), &space.narrowed(-END_RESERVE), q)?;
             return Ok(None);
         };
         let freed = Freed { clearance, until: out.duration() };
@@ -162,7 +162,8 @@ impl<'a> Pieces<'a> {
             offer(out, self.around_start()?, freed.clearance - lines as f64 * ALLOWED_LOSS)?;
         }
         plan.clearance = least;
-        plan.surroundings = None;
+        let around = plan.surroundings.take();
+        plan.surroundings_but_for_touch = around.filter(|_| touches);
         Ok(())
     }
 

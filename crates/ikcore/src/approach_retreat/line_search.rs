@@ -89,7 +89,7 @@ impl LineSearch<'_> {
         }
         if found.is_empty() {
             let Some((_, why)) = hindrance else { return Err(Error::Interrupted) };
-            let (what, side, distance) = (name.of_target(), self.side.name(), number(self.line.distance));
+            let (what, side, distance) = (name.of_given(end), self.side.name(), number(self.line.distance));
             let problem = format!("no straight {side} of {distance} m: {why}").into();
             return Err(Error::Unreachable { what, problem });
         }
@@ -101,7 +101,7 @@ impl LineSearch<'_> {
         let target = match end {
             Endpoint::Configuration(q) => {
                 if name != EndName::Start {
-                    self.position_limits.admit(Some(self.tip.robot()), &name.of_target(), q)?;
+                    self.position_limits.admit(Some(self.tip.robot()), &name.of_configuration(), q)?;
                 }
                 return Ok(vec![q.clone()]);
             }

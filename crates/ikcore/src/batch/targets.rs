@@ -4,7 +4,7 @@ use nalgebra::Matrix4;
 
 use crate::error::{Error, Result};
 use crate::math::pose;
-use crate::task::{Target, TargetRow};
+use crate::task::{Target, TargetRow, check_point};
 
 /// Targets of a batch as arrays of m rows, not yet checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,11 +35,14 @@ impl Targets<'_> {
     /// Checks target `i`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite), or [`Error::NotRigid`](crate::Error::NotRigid) for a pose.
+    /// As [`Target::validate`], and [`Error::NotRigid`] for a pose.
     pub(super) fn check(&self, i: usize) -> Result<()> {
         match self {
             Self::Positions(rows) => Target::Position(rows[i]).validate(),
-            Self::Poses(rows) => pose::check_matrix("target", &Matrix4::from_row_slice(&rows[i])),
+            Self::Poses(rows) => {
+                pose::check_matrix("target", &Matrix4::from_row_slice(&rows[i]))?;
+                check_point("target", &[3, 7, 11].map(|entry| rows[i][entry]))
+            }
             Self::Tips(tasks) => tasks.iter().try_for_each(|task| task.check(i)),
         }
     }

@@ -51,7 +51,7 @@ pub(super) fn plan(
     let is_clear = |q: &[f64]| is_kept(q) && space.keeps(q, END_RESERVE) && is_held(q);
     let refusal = |name: EndName, end: &Endpoint| match end {
         Endpoint::Configuration(q) => {
-            let what = name.of_target();
+            let what = name.of_configuration();
             refuse_broken(&what, &options.keeps, robot, q)?;
             refuse_too_heavy(&what, limits, q)?;
             refuse_collision(&what, space, q)

@@ -46,7 +46,7 @@ pub(super) fn begin(
         });
     };
     check(search, velocity)?;
-    refuse_broken(&EndName::Start.of_target(), &options.keeps, search.robot, q)?;
+    refuse_broken(&EndName::Start.of_configuration(), &options.keeps, search.robot, q)?;
     let taken = StartSlack::any();
     // Motions of state_to_state know nothing of tips and torques; those that keep their limits are taken.
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot)).of_joint_motion();

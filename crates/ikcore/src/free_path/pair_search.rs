@@ -211,7 +211,7 @@ impl<'a> PairSearch<'a> {
     fn require_inside(&self, name: EndName, end: &Endpoint) -> Result<()> {
         match end {
             Endpoint::Configuration(q) => {
-                self.position_limits.admit(Some(self.robot), &name.of_target(), q).map(|_| ())
+                self.position_limits.admit(Some(self.robot), &name.of_configuration(), q).map(|_| ())
             }
             Endpoint::Targets { .. } => Ok(()),
         }

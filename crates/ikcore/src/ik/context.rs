@@ -289,7 +289,7 @@ impl<'a> SolveContext<'a> {
     /// # Errors
     /// As [`hint`](Self::hint).
     pub(crate) fn check_hint(&self, q: &[f64]) -> Result<()> {
-        self.robot().check("start", q)
+        self.robot().check("start_q", q)
     }
 
     #[cold]
@@ -339,8 +339,8 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     let remedy = "a single configuration has no motion; leave it out";
     limits.require_for(robot)?;
     limits.require_none(&[Field::Acceleration, Field::Jerk], "solve", remedy)?;
-    limits.refuse_tips(&TipField::ALL, "solve", "a single configuration has no motion")?;
-    limits.refuse_torque("solve", "a single configuration has no motion")?;
+    limits.refuse_tips(&TipField::ALL, "solve", "plan a motion, because a single configuration has none")?;
+    limits.refuse_torque("solve", "plan a motion, because a single configuration has none")?;
     let given = limits.position_box()?;
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }

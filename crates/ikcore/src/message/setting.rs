@@ -34,6 +34,8 @@ pub enum Setting {
     AllTurns,
     /// Error for an invalid item of a batch.
     RaiseInvalid,
+    /// Tracker that is stepped by its caller.
+    Session,
     /// Approach from rest to a moving path.
     Ease,
     /// Way back of a tracked arm to a configuration on its target.
@@ -111,6 +113,7 @@ impl fmt::Display for Setting {
             Self::JointWeights => "weights of joints",
             Self::AllTurns => "taking all whole turns",
             Self::RaiseInvalid => "make invalid items an error",
+            Self::Session => "Session",
             Self::Ease => "an eased start",
             Self::Recover => "recovery",
             Self::FreeStart => "free_start",

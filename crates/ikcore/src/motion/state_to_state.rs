@@ -98,8 +98,8 @@ pub fn stop(from: &ArmState, limits: &Limits) -> Result<Trajectory> {
 
 /// The limits of each joint on velocity, acceleration and jerk.
 fn rates(limits: &Limits) -> Result<Vec<Rates>> {
-    limits.refuse_tips(&TipField::ALL, METHOD, "each joint has its own time; plan_point_to_point keeps them")?;
-    limits.refuse_torque(METHOD, "each joint has its own time; plan_point_to_point keeps them")?;
+    limits.refuse_tips(&TipField::ALL, METHOD, "use plan_point_to_point, because here each joint has its own time")?;
+    limits.refuse_torque(METHOD, "use plan_point_to_point, because here each joint has its own time")?;
     limits.validate(0.0, 0)?;
     let constants = |field: Field| -> Result<Vec<f64>> {
         let mut values = limits.constants(field, METHOD, "give numbers")?;

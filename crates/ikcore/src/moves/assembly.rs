@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::free_path;
 use crate::math::vector::largest_difference;
 use crate::message::Message;
-use crate::plan::{EndTurns, Endpoint, MoveReport, PointToPointOptions, SpeedBound};
+use crate::plan::{EndTurns, Endpoint, MoveCourse, MoveReport, PointToPointOptions, SpeedBound};
 use crate::solver::Monitor;
 use crate::timing::{ConstantLimits, JointPath};
 use crate::trajectory::{Trajectory, polynomial};
@@ -146,7 +146,7 @@ impl<'a> Assembly<'a> {
                 // Corners may take all of it.
                 let between_corners = [window.begin, window.end()].map(|s| time_at(&times, s));
                 let has_way = window.to > window.from;
-                let speed = if has_way { tip_speed(self.around.robot, &motion, between_corners)? } else { 0.0 };
+                let speed = has_way.then(|| tip_speed(self.around.robot, &motion, between_corners)).transpose()?;
                 self.report(part.index, [start, end_of_part], speed, vec![]);
                 start = end_of_part;
                 continue;
@@ -190,9 +190,11 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn report(&mut self, index: usize, [start, end]: [f64; 2], speed: f64, bound_by: Vec<SpeedBound>) {
+    /// Reports a move with this speed of the tip (m/s) between its blends; `None` where they take all of it.
+    fn report(&mut self, index: usize, [start, end]: [f64; 2], speed: Option<f64>, bound_by: Vec<SpeedBound>) {
         let name = self.moves[index].name.clone();
-        self.reports.push(MoveReport { name, start, end, speed, bound_by });
+        let (course, speed) = speed.map_or((MoveCourse::Blends, 0.0), |speed| (MoveCourse::Way, speed));
+        self.reports.push(MoveReport { name, start, end, course, speed, bound_by });
     }
 
     fn rest(&mut self, index: usize, seconds: f64) -> Result<()> {
@@ -201,7 +203,8 @@ impl<'a> Assembly<'a> {
             let still = self.q.iter().map(|q| polynomial([*q])).collect();
             self.push(Trajectory::new(self.limits.joint_names(), vec![0.0, seconds], still)?)?;
         }
-        self.report(index, [start, self.now()], 0.0, vec![]);
+        let (name, end) = (self.moves[index].name.clone(), self.now());
+        self.reports.push(MoveReport { name, start, end, course: MoveCourse::Rest, speed: 0.0, bound_by: vec![] });
         Ok(())
     }
 
@@ -231,7 +234,7 @@ impl<'a> Assembly<'a> {
         let (start, duration) = (self.now(), plan.trajectory.duration());
         let speed = tip_speed(robot, &plan.trajectory, [0.0, duration])?;
         self.push(plan.trajectory)?;
-        self.report(part.index, [start, self.now()], speed, vec![]);
+        self.report(part.index, [start, self.now()], Some(speed), vec![]);
         Ok(())
     }
 

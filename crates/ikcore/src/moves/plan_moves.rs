@@ -6,7 +6,7 @@ use super::follower::{Lost, Stray};
 use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung, blocks};
 use super::moves_options::MovesOptions;
 use super::outline::outline;
-use super::program::{JointGoal, Move, MoveKind, check_program};
+use super::program::{JointGoal, Move, MoveKind, check_program, with_blends_that_count};
 use super::tool_path::ToolPath;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolveOptions, solve_all};
@@ -20,7 +20,8 @@ use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
 use crate::wording::number;
 
-/// Length past the place where a path is lost (m), at which its pose is solved for to learn why.
+/// Length past the place where a path is lost (m), at which its pose is solved for to learn why; also how exactly the end of the reach is
+/// found.
 const BEYOND: f64 = 1e-3;
 
 /// Plans the motion of a program of `moves`, from rest at `start` to rest.
@@ -41,6 +42,7 @@ pub fn plan_moves(
     const METHOD: &str = "plan_moves";
     let stopwatch = Stopwatch::start();
     robot.require_one_tip(METHOD)?;
+    let moves = &with_blends_that_count(moves);
     check_program(robot, moves)?;
     robot.check("start_q", start)?;
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
@@ -143,38 +145,60 @@ impl Climber<'_> {
         };
         let (index, along) = place_on(path, at);
         let named = self.moves[index].named(index);
-        let problem: Message = match cause {
-            Cause::Limit { joint, value } => {
-                let (lower, upper) = (self.limits.lower[joint], self.limits.upper[joint]);
-                format!(
-                    "{} m along it, joint '{}' would have to go to {}, beyond its limits [{}, {}]; {}",
-                    number(along),
-                    self.limits.joint_name(joint),
-                    number(value),
-                    number(lower),
-                    number(upper),
-                    self.advice(block)
-                )
-                .into()
+        let no_solution = match &cause {
+            Cause::Blocked(_) => None,
+            _ => self.end_of_reach(path, at, monitor)?,
+        };
+        let no_solution = no_solution.map(|(at, why)| message![format!("{} m along it, ", number(at)), why]);
+        let along = number(along);
+        let problem: Message = match (cause, no_solution) {
+            (Cause::OutOfReach, Some(problem)) => return Ok(Error::Unreachable { what: named, problem }),
+            (Cause::OutOfReach, None) => format!(
+                "{along} m along it, the arm cannot go on from any configuration that it comes with, which a singularity explains; {}",
+                self.advice(block)
+            )
+            .into(),
+            (Cause::Limit { joint, value }, no_solution) => {
+                let advice = match no_solution {
+                    Some(place) => message!["no other configuration helps: ", place],
+                    None => self.advice(block).into(),
+                };
+                message![format!("{along} m along it, {}; ", self.beyond_limits(joint, value)), advice]
             }
-            Cause::Blocked(fault) => format!("{} m along it, {fault}", number(along)).into(),
-            Cause::OutOfReach => {
-                let pose = path.pose((at + BEYOND).min(path.length()));
-                let options = AllOptions { each: self.each.clone(), ..AllOptions::default() };
-                let found = solve_all(self.robot, &Target::Pose(pose), &options, monitor)?;
-                if found.solutions.is_empty() {
-                    let problem = message![format!("{} m along it, ", number(along)), found.message()];
-                    return Ok(Error::Unreachable { what: named, problem });
-                }
-                format!(
-                    "{} m along it, the arm cannot go on from any configuration that it comes with, which a singularity explains; {}",
-                    number(along),
-                    self.advice(block)
-                )
-                .into()
-            }
+            (Cause::Blocked(fault), _) => format!("{along} m along it, {fault}").into(),
         };
         Ok(Error::NotFound { what: format!("a motion along {named}"), problem })
+    }
+
+    fn beyond_limits(&self, joint: usize, value: f64) -> String {
+        let (name, value) = (self.limits.joint_name(joint), number(value));
+        let [lower, upper] = [&self.limits.lower, &self.limits.upper].map(|limits| number(limits[joint]));
+        format!("joint '{name}' would have to go to {value}, beyond its limits [{lower}, {upper}]")
+    }
+
+    /// Where a move has no configuration any more: the length along it, and why. `None` if it has some both at `at`, where its path was lost,
+    /// and at its end.
+    fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
+        let (index, _) = place_on(path, at);
+        let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
+        let mut why_none = |s: f64| -> Result<Option<Message>> {
+            let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
+            let found = solve_all(self.robot, &Target::Pose(path.pose(s)), &options, monitor)?;
+            Ok(found.solutions.is_empty().then(|| found.message()))
+        };
+        if let Some(why) = why_none((at + BEYOND).min(path.length()))? {
+            return Ok(Some((place_on(path, at).1, why)));
+        }
+        let Some(mut why) = why_none(end)? else { return Ok(None) };
+        let (mut has_some, mut has_none) = (at, end);
+        while has_none - has_some > BEYOND {
+            let middle = 0.5 * (has_some + has_none);
+            match why_none(middle)? {
+                Some(found) => (has_none, why) = (middle, found),
+                None => has_some = middle,
+            }
+        }
+        Ok(Some((place_on(path, has_none).1, why)))
     }
 
     fn advice(&self, block: usize) -> &'static str {

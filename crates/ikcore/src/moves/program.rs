@@ -12,7 +12,8 @@ const LONGEST_WAIT: f64 = 1e6;
 pub struct Move {
     /// What the arm does.
     pub kind: MoveKind,
-    /// Radius (m) about the end of the move inside which the motion may round the corner to the next move; with zero it stops there.
+    /// Radius (m) about the end of the move inside which the motion may round the corner to the next move. With zero, or less than the
+    /// 1e-5 m that a path is kept to, it stops there.
     pub blend: f64,
     /// Name in messages and reports.
     pub name: Option<String>,
@@ -120,6 +121,18 @@ impl Move {
         }
         self.speed().map_or(Ok(()), |speed| require_positive(&format!("speed{of}"), speed))
     }
+}
+
+/// Blend radius (m) below which a corner is a stop: lines and arcs are kept to no better than that.
+const LEAST_BLEND: f64 = 1e-5;
+
+/// The moves with those blends that count.
+pub(super) fn with_blends_that_count(moves: &[Move]) -> Vec<Move> {
+    let counted = |each: &Move| {
+        let is_stop = (0.0..LEAST_BLEND).contains(&each.blend);
+        Move { blend: if is_stop { 0.0 } else { each.blend }, ..each.clone() }
+    };
+    moves.iter().map(counted).collect()
 }
 
 /// Checks each move by itself, and that no blend leads into a wait.

@@ -19,13 +19,13 @@ const STILL: f64 = 0.95;
 /// What stands for the limits of an arm without joints.
 const NO_LIMIT: (OneLimit, f64) = (OneLimit::Joint(0, "velocity"), 0.0);
 
-/// Largest speed of the tip on move `index` of a path (m/s), between its corners.
-pub(super) fn speed_on(path: &ToolPath, index: usize, times: &[PathTime]) -> f64 {
+/// Largest speed of the tip on move `index` of a path (m/s), between its corners; `None` where they take all of it.
+pub(super) fn speed_on(path: &ToolPath, index: usize, times: &[PathTime]) -> Option<f64> {
     let is_on_it = |at: &&PathTime| {
         let piece = &path.pieces[path.piece_at(at.s)];
         piece.index == index && !piece.is_corner()
     };
-    times.iter().filter(is_on_it).map(|at| at.rate).fold(0.0, f64::max)
+    times.iter().filter(is_on_it).map(|at| at.rate).reduce(f64::max)
 }
 
 /// What keeps the tip below the speed asked for on move `index`, between its corners.

@@ -15,8 +15,8 @@ use crate::trajectory::{Coefficients, POWERS, Trajectory};
 /// Distance added to the margin at end configurations (m), so that motions to them can be certified.
 pub(crate) const END_RESERVE: f64 = 2e-6;
 
-/// Name of the start in errors.
-const START: &str = "start";
+/// Name of a given configuration at the start in errors.
+const START: &str = "start_q";
 
 /// The space that `surroundings` leave to a motion of `robot` from point to point; `None` if nothing can collide: without obstacles,
 /// by default, an arm without bodies cannot.

@@ -53,12 +53,7 @@ impl Endpoint {
         match self {
             Self::Targets { tips, targets } if tips.is_empty() => {
                 robot.require_one_tip("a plain target of plan_point_to_point")?;
-                targets.iter().try_for_each(Target::validate).map_err(|error| match error {
-                    Error::NotFinite { place, value, .. } => {
-                        Error::NotFinite { what: name.of_target().into(), place, value }
-                    }
-                    other => other,
-                })?;
+                targets.iter().try_for_each(|target| target.validate_as(&name.of_target()))?;
                 let only = NamedTask::of_only(task.copied(), Tolerance::default()).validated()?;
                 reduce(robot, &[only], &mut targets.clone())
             }
@@ -96,6 +91,14 @@ impl EndName {
     /// The argument of the configuration, e.g. `end_q[3]`.
     pub(crate) fn of_configuration(self) -> String {
         self.argument("_q")
+    }
+
+    /// The argument of this end as it was given.
+    pub(crate) fn of_given(self, end: &Endpoint) -> String {
+        match end {
+            Endpoint::Targets { .. } => self.of_target(),
+            Endpoint::Configuration(_) => self.of_configuration(),
+        }
     }
 
     fn argument(self, suffix: &str) -> String {

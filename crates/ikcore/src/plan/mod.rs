@@ -45,7 +45,7 @@ pub use endpoint::Endpoint;
 pub(crate) use endpoint::{EndName, no_usable_end};
 pub(crate) use joined::joined;
 pub(crate) use kept_along::broken_along;
-pub use move_report::{MoveReport, SpeedBound};
+pub use move_report::{MoveCourse, MoveReport, SpeedBound};
 pub use path_break::Break;
 pub use plan::{Freed, Improvement, JointTurned, Peak, Plan};
 pub(crate) use planar_arm::{ELBOW_LINKS, wrapped};

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::wording::number;
+
 /// When a move was made, how fast, and what slowed it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MoveReport {
@@ -11,11 +13,35 @@ pub struct MoveReport {
     pub start: f64,
     /// When it ends (s).
     pub end: f64,
+    /// What is between its blends.
+    pub course: MoveCourse,
     /// Largest speed of the tip on it (m/s), between its blends. A turn on the spot counts 0.1 m for each radian.
     pub speed: f64,
     /// What kept the tip below the speed asked for, between its blends, and when; empty where it had that speed, and where none is asked
     /// for.
     pub bound_by: Vec<SpeedBound>,
+}
+
+impl MoveReport {
+    /// What the tip does on it, in words.
+    pub fn message(&self) -> String {
+        match self.course {
+            MoveCourse::Rest => "the arm rests".into(),
+            MoveCourse::Blends => "wholly in blends".into(),
+            MoveCourse::Way => format!("up to {} m/s between blends", number(self.speed)),
+        }
+    }
+}
+
+/// What is between the blends of a move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MoveCourse {
+    /// A way of the tip or the joints.
+    Way,
+    /// Nothing: the blends take the whole move.
+    Blends,
+    /// No motion at all: a wait, or a move that ends where it begins.
+    Rest,
 }
 
 /// A limit that keeps the tip below the speed asked for.

@@ -52,6 +52,8 @@ pub struct Plan {
     pub keeps: Vec<Keep>,
     /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
+    /// Surroundings that it keeps clear of but for what its straight ends may touch, if they may touch anything.
+    pub surroundings_but_for_touch: Option<Surroundings>,
     /// Largest distance (m) of the tip from its path, at its points and between them; `None` for point-to-point plans.
     pub accuracy: Option<f64>,
     /// Positions of the path (m), joined by straight lines; `None` for point-to-point plans.
@@ -142,6 +144,7 @@ impl Plan {
             freed: None,
             keeps: vec![],
             surroundings: None,
+            surroundings_but_for_touch: None,
             accuracy: None,
             reference: None,
             redundancy: vec![],
@@ -233,8 +236,15 @@ impl Plan {
 
     /// Clearance of a certified motion, in words.
     fn clearance_in_words(&self) -> String {
-        let Some(surroundings) = &self.surroundings else { return String::new() };
-        clear_in_words(self.clearance.as_ref(), surroundings.first_open_mesh())
+        let clear = |around: &Surroundings| clear_in_words(self.clearance.as_ref(), around.first_open_mesh());
+        match (&self.surroundings, &self.surroundings_but_for_touch) {
+            (Some(around), _) => clear(around),
+            // What is left out of a motion that begins in a contact has words of its own.
+            (None, Some(around)) if self.freed.is_none() => {
+                format!("{}; what its straight ends may touch is left out", clear(around))
+            }
+            _ => String::new(),
+        }
     }
 
     fn breaks_in_words(&self) -> String {

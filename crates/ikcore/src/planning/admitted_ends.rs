@@ -23,7 +23,7 @@ impl AdmittedEnds {
         let limits = constant.position_limits(robot)?;
         let mut admitted = Self { start: start.clone(), ends: vec![], outside: vec![] };
         if let Endpoint::Configuration(q) = start {
-            let taken = limits.admit_start(Some(robot), "start", q, &options.start_slack)?;
+            let taken = limits.admit_start(Some(robot), "start_q", q, &options.start_slack)?;
             (admitted.start, admitted.outside) = (Endpoint::Configuration(taken.q), taken.outside);
         }
         admitted.ends = ends.iter().map(|end| without_rounding(robot, &limits, end)).collect();
@@ -62,7 +62,9 @@ fn joins_given_ends(options: &PointToPointOptions) -> bool {
 
 fn without_rounding(robot: &Robot, limits: &Limits, end: &Endpoint) -> Endpoint {
     match end {
-        Endpoint::Configuration(q) => limits.admit(Some(robot), "end", q).map_or(end.clone(), Endpoint::Configuration),
+        Endpoint::Configuration(q) => {
+            limits.admit(Some(robot), "end_q", q).map_or(end.clone(), Endpoint::Configuration)
+        }
         Endpoint::Targets { .. } => end.clone(),
     }
 }

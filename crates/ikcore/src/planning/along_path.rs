@@ -29,9 +29,12 @@ pub fn plan_along_path(
     if options.objective == Cost::TipTravel {
         return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
     }
-    let tip_path = options
+    let mut tip_path = options
         .task
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
+    if options.accuracy.is_none() && tip_path.turn_coarseness() > 0.0 {
+        tip_path = Cow::Owned(tip_path.into_owned().as_sampled());
+    }
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let keeps = PathKeeps { robot, keeps: &options.keeps };
     let with_tool = options.task.map_or(Ok(None), |task| task.robot(robot))?;

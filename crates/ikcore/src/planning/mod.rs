@@ -31,7 +31,7 @@ pub use crate::along_path::TipPath;
 pub use crate::moves::{JointGoal, Move, MoveKind, MovesOptions, plan_moves};
 pub use crate::plan::{
     AlongPathMethod, AlongPathOptions, Break, Cost, Elbow, EndTurns, Endpoint, Freed, Improvement, JointTurned,
-    LineContact, LineFrame, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget,
+    LineContact, LineFrame, MoveCourse, MoveReport, Orientation, Orientations, Peak, Plan, PlanarArm, PlanarTarget,
     PointToPointMethod, PointToPointOptions, SpeedBound, StraightLine, Tpbso,
 };
 pub use crate::timing::{

@@ -140,7 +140,7 @@ pub(crate) fn check_point_to_point(
 fn with_way_out(error: Error, options: &PointToPointOptions) -> Error {
     match error {
         Error::InCollision { what, link, other, depth, remedy }
-            if what == EndName::Start.of_target()
+            if what == EndName::Start.of_configuration()
                 && remedy.is_empty()
                 && options.start_velocity.is_none()
                 && options.method == PointToPointMethod::MinMax =>

@@ -41,6 +41,7 @@ pub(crate) use levels::Levels;
 pub use named_task::NamedTask;
 pub use region::{Outside, Region};
 pub use subject::Subject;
+pub(crate) use target::check_point;
 pub use target::{Target, TargetRow};
 pub(crate) use target_segment::TargetSegment;
 pub use target_segment::Twist;

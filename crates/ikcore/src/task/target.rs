@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
-use crate::error::{Result, require_finite};
+use crate::error::{Error, Result, require_finite};
 use crate::math::vector::distance;
 use crate::math::{Frame, Pose};
 
@@ -35,17 +35,25 @@ impl From<&Pose> for Target {
 }
 
 impl Target {
-    /// Checks that every number is finite.
+    /// Checks that every number is finite, and that squares of the position are.
     ///
     /// # Errors
-    /// [`Error::NotFinite`](crate::Error::NotFinite).
+    /// [`Error::NotFinite`], [`Error::OutOfRange`].
     pub fn validate(&self) -> Result<()> {
+        self.validate_as("target")
+    }
+
+    /// [`validate`](Self::validate), with the name of the argument in errors.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub(crate) fn validate_as(&self, what: &str) -> Result<()> {
         let frame = match self {
-            Self::Position(position) => return check_point(position),
+            Self::Position(position) => return check_point(what, position),
             Self::Pose(frame) | Self::Orientation(frame) | Self::Pointing { frame, .. } => frame,
         };
-        check_point(&frame.origin)?;
-        require_finite("target", frame.axes.as_flattened(), |i| format!("rotation entry {i}"))
+        check_point(what, &frame.origin)?;
+        require_finite(what, frame.axes.as_flattened(), |i| format!("rotation entry {i}"))
     }
 
     /// Position of the target (m), if it has one.
@@ -90,6 +98,18 @@ impl Target {
     }
 }
 
-fn check_point(point: &[f64; 3]) -> Result<()> {
-    require_finite("target", point, |i| format!("coordinate {}", ["x", "y", "z"][i]))
+/// Largest coordinate of a target (m): squares of larger ones are beyond floating-point numbers.
+const FARTHEST: f64 = 1e100;
+
+/// Checks the position of a target, the argument `what`.
+pub(crate) fn check_point(what: &str, point: &[f64; 3]) -> Result<()> {
+    let coordinate = |i: usize| format!("coordinate {}", ["x", "y", "z"][i]);
+    require_finite(what, point, coordinate)?;
+    match point.iter().position(|value| value.abs() > FARTHEST) {
+        None => Ok(()),
+        Some(i) => {
+            let what = format!("{what}: {}", coordinate(i));
+            Err(Error::out_of_range(what, format!("from -{FARTHEST:e} to {FARTHEST:e} m"), point[i]))
+        }
+    }
 }

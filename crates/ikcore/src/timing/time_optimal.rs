@@ -11,6 +11,7 @@ use super::time_scaling::without_rounding;
 use super::torque_segments::TorqueSegments;
 use crate::error::{Error, Result};
 use crate::trajectory::Trajectory;
+use crate::wording::number;
 
 /// Options of [`time_optimal`]. The default is from rest to rest on an adaptively refined grid.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -40,10 +41,31 @@ const SEGMENTS_FOR_JERK: usize = 100;
 ///
 /// # Errors
 /// [`Error::Infeasible`] for a path that leaves the position limits, a joint that must move but may not, or speeds at the
-/// ends that are too high; [`Error::OutOfRange`] for the options.
+/// ends that are too high; [`Error::OutOfRange`] for the options; [`Error::InvalidPath`] for ways and limits whose times are beyond
+/// floating-point numbers.
 pub fn time_optimal(path: &JointPath, limits: &ConstantLimits, options: &TimingOptions) -> Result<Trajectory> {
     limits.require_for(path)?;
-    time(path, limits, options)
+    time(path, limits, options).map_err(|error| beyond_numbers(error, path))
+}
+
+/// Names the joint with the longest way if the times of its motion are beyond floating-point numbers; any other error as it is.
+fn beyond_numbers(error: Error, path: &JointPath) -> Error {
+    let (Error::WrongLength { what, .. } | Error::NotFinite { what, .. }) = &error else { return error };
+    if !what.to_string().starts_with(Trajectory::WHAT) {
+        return error;
+    }
+    let way = |joint: usize| {
+        let [lowest, highest] = path.range(joint);
+        highest - lowest
+    };
+    let longest = (0..path.joints().len()).max_by(|one, other| way(*one).total_cmp(&way(*other))).unwrap_or(0);
+    let problem = format!(
+        "joint '{}' moves by {}, for which the limits leave a time beyond floating-point numbers: check the units of waypoints, knots and \
+         limits",
+        path.joints()[longest],
+        number(way(longest))
+    );
+    Error::InvalidPath { problem }
 }
 
 /// [`time_optimal`] without the check of position limits.

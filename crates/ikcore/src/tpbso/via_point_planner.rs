@@ -6,7 +6,9 @@ use super::published_settings::{METHOD, no_configuration, search};
 use super::via_point_cost::ViaPointCost;
 use crate::error::Result;
 use crate::obstacle::{ClearSpace, ClearanceSweep};
-use crate::plan::{Elbow, Endpoint, Plan, PointToPointOptions, Tpbso, least_clearance, refuse_collision, too_near};
+use crate::plan::{
+    Elbow, EndName, Endpoint, Plan, PointToPointOptions, Tpbso, least_clearance, refuse_collision, too_near,
+};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Stopwatch};
 use crate::timing::ConstantLimits;
@@ -26,17 +28,19 @@ pub(crate) fn point_to_point(
     limits.refuse_torque(METHOD)?;
     limits.require_velocities(METHOD)?;
     let collisions = space.map(|space| CollisionTest::new(space, robot));
-    let mut configurations = |what: &str, end: &Endpoint, elbow: Elbow| {
+    let mut configurations = |name: EndName, end: &Endpoint, elbow: Elbow| {
+        let what = name.of_given(end);
         if let (Endpoint::Configuration(q), Some(space)) = (end, space) {
-            refuse_collision(what, space, q)?;
+            refuse_collision(&what, space, q)?;
         }
-        EndConfigurations::new(what, end, robot, &limits, elbow, options.seed, monitor)
+        EndConfigurations::new(&what, end, robot, &limits, elbow, options.seed, monitor)
     };
     if let Endpoint::Configuration(q) = end {
-        limits.position_limits(robot)?.admit(Some(robot), "end", q)?;
+        limits.position_limits(robot)?.admit(Some(robot), &EndName::End.of_configuration(), q)?;
     }
     let [start_elbow, end_elbow] = tpbso.elbows;
-    let (start, end) = (configurations("start", start, start_elbow)?, configurations("end", end, end_elbow)?);
+    let start = configurations(EndName::Start, start, start_elbow)?;
+    let end = configurations(EndName::End, end, end_elbow)?;
     let mut cost = ViaPointCost::new(robot, &limits, [start, end], options.objective, collisions.as_ref());
     let search = search(tpbso.solver.as_ref(), options.stop, options.seed);
     let bounds = cost.bounds();

@@ -16,6 +16,7 @@
 //! | `path_approach` | approach from rest onto a moving path, `TrackOptions::ease` |
 //! | `commanded_motion` | the motion between ticks under acceleration limits |
 //! | `session`, `step` | [`Session`]: arm, rule and safety filter; one [`Step`] per tick |
+//! | `idle` | why no target leads the arm in a tick |
 //! | `tracked_arm` | accepted configuration, clock, limits and targets |
 //! | `outside_start` | an arm that begins outside its position limits |
 //! | `limited_state` | the motion of an arm under acceleration or jerk limits |
@@ -43,6 +44,7 @@ mod constrained_step;
 mod controller;
 mod coupled_stop;
 mod current_tasks;
+mod idle;
 mod kept;
 mod late_sensor;
 mod limited_state;
@@ -74,6 +76,7 @@ mod way_back;
 
 pub use away::{Away, Way};
 pub use controller::{Antenna, ControlSession, Controller, Delay, UpdateRule, Znnbas};
+pub use idle::Idle;
 pub use model_free::{ModelFreeOptions, ModelFreeRecord, track_model_free};
 pub use plant::{Fault, FunctionPlant, KinematicPlant, Plant};
 pub use record::{Record, TipTable};

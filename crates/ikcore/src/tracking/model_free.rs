@@ -69,13 +69,15 @@ pub fn track_model_free(
     options: &ModelFreeOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<ModelFreeRecord> {
+    const METHOD: &str = "track_model_free";
     let stopwatch = Stopwatch::start();
     let ticks = reference.len() - 1;
     check_delay(&options.controller, ticks)?;
     let limits = options.limits.clone().unwrap_or_else(|| Limits::none_for(start.len()));
     limits.validate(reference.dt(), ticks)?;
     let ModelFreeOptions { controller, tolerance, seed, .. } = options;
-    let mut session = ControlSession::new(controller, start, reference.dt(), limits.clone(), *tolerance, *seed)?;
+    let mut session =
+        ControlSession::begun_by(METHOD, controller, start, reference.dt(), limits.clone(), (*tolerance, *seed))?;
     let mut track =
         Record::new(start.len(), reference.len(), limits, LimitAt::Interval, (*tolerance).into(), reference.dt());
     track.start_outside = session.start_outside().to_vec();

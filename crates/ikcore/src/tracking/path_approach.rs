@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::session::Session;
 use super::tip_paths::TipPaths;
-use super::track_options::TrackOptions;
+use super::track_options::{TRACK, TrackOptions};
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits, Profile};
@@ -37,7 +37,7 @@ impl PathApproach {
         options: &TrackOptions,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<Self>> {
-        let limits = options.limits_for(robot)?;
+        let limits = options.limits_for(robot, &TRACK.into())?;
         if ![Field::Acceleration, Field::Jerk].into_iter().any(|field| limits.is_finite(field)) {
             let problem = message![
                 Setting::Ease,
@@ -46,9 +46,9 @@ impl PathApproach {
             ];
             return Err(Error::Contradiction { problem });
         }
-        let tips = TipRates::new(robot, limits.tips(), "track")?;
+        let tips = TipRates::new(robot, limits.tips(), TRACK)?;
         let dt = asked.paths[0].dt();
-        let mut session = Session::new(robot, start, dt, &without_rates(&limits, options)?)?;
+        let mut session = Session::begun_by(&TRACK.into(), robot, start, dt, &without_rates(&limits, options)?)?;
         session.begin(asked.arrival(0))?;
         let mut around: VecDeque<Option<Point>> = VecDeque::from([None]);
         for i in 1..asked.len() {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::around_arm::ObstacleVelocities;
 use super::away::Way;
+use super::idle::Idle;
 use super::kept::Kept;
 use super::limited_state::LimitedState;
 use super::record::Accepted;
@@ -23,7 +24,7 @@ use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
 use crate::limits::{JointOutside, Limits};
 use crate::math::vector::write_within;
-use crate::message::Message;
+use crate::message::{Message, Setting};
 use crate::objective::{Bounds, Point, Score};
 use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
 use crate::problem::Problem;
@@ -53,8 +54,8 @@ pub struct Session {
     way_back: Option<Box<WayBack>>,
     /// Rest of an arm that comes no nearer; `None` where there is no way back.
     settling: Option<Settling>,
-    /// Whether the arm brakes until a target arrives.
-    stopping: bool,
+    /// Why the arm brakes until a target arrives, if it does.
+    stopping: Option<Idle>,
     seed: u64,
     rng: LazyRng,
 }
@@ -66,12 +67,26 @@ impl Session {
     /// Any [`Error`](crate::Error) for wrong input: a start outside its limits, limits that this tracker does not
     /// support, a time step that is not positive.
     pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        Self::begun_by(&Setting::Session.into(), robot, start, dt, options)
+    }
+
+    /// [`new`](Self::new) for the call `method`, which messages name.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(super) fn begun_by(
+        method: &Message,
+        robot: &Robot,
+        start: &[f64],
+        dt: f64,
+        options: &TrackOptions,
+    ) -> Result<Self> {
         options.require_tips(robot)?;
         require_positive("dt", dt)?;
         options.rule.validate()?;
         options.rule.validate_for(robot, dt)?;
         options.check_goals(robot)?;
-        let mut arm = TrackedArm::new(robot, start, dt, options)?;
+        let mut arm = TrackedArm::new(method, robot, start, dt, options)?;
         // If limits vary over time, goals use the joint ranges at the start.
         let ranges = Bounds::from_ranges((0..start.len()).map(|j| arm.limits.position_range(j, 0.0, 0.0).into()));
         let goals = Goals::new(&options.goals, &arm.robot, &ranges);
@@ -80,10 +95,10 @@ impl Session {
         let kept = kept_by(&options.keeps, robot, &arm)?;
         let filters = !arm.has_one_tip() || space.is_some() || kept.is_some();
         let safety = if filters { Some(Box::new(SafetyFilter::new(space, kept, &arm.limits)?)) } else { None };
-        let pace = TipPace::new(robot, &arm.limits)?;
-        let mut torques = TorquePace::new(robot, &arm.limits)?;
+        let pace = TipPace::new(method, robot, &arm.limits)?;
+        let mut torques = TorquePace::new(method, robot, &arm.limits)?;
         if let Some(torques) = &mut torques {
-            torques.require_held("start", &arm.q, robot)?;
+            torques.require_held("start_q", &arm.q, robot)?;
             arm.set_braking_part(1.0); // prepares the limits of milder stops
         }
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
@@ -93,7 +108,7 @@ impl Session {
             Box::new(WayBack::new(&arm.limits, options.recover))
         });
         let settling = way_back.is_some().then(|| Settling::new(&arm.limits));
-        let stopping = false;
+        let stopping = None;
         Ok(Self {
             arm,
             rule,
@@ -217,7 +232,17 @@ impl Session {
         let status = if self.is_clear(&self.arm.q) { status } else { Status::InCollision };
         let (position, error) = (self.arm.robot.tip_position(&self.arm.q), error.into());
         let (evaluations, iterations) = (1, 0);
-        Step { status, error, position, evaluations, iterations, inside_limits: true, away: None, interrupted: false }
+        Step {
+            status,
+            error,
+            position,
+            evaluations,
+            iterations,
+            inside_limits: true,
+            away: None,
+            idle: None,
+            interrupted: false,
+        }
     }
 
     /// Moves by one tick towards `target` of the only tip, inside the limits. Time advances whether or not the target is
@@ -247,7 +272,7 @@ impl Session {
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let settled = self.is_settled();
-        let mut found = if self.stopping || self.arm.targets.last().is_empty() {
+        let mut found = if self.idle().is_some() {
             self.arm.allow_braking();
             self.brake()
         } else {
@@ -256,7 +281,7 @@ impl Session {
             self.arm.allow_braking();
             found
         };
-        let held = if found.interrupted || self.stopping { None } else { self.filter(settled, &mut found) };
+        let held = if found.interrupted || self.stopping.is_some() { None } else { self.filter(settled, &mut found) };
         self.keep_pace(&mut found);
         self.keep_torques(settled, &mut found);
         self.keep_in_region(&mut found);
@@ -278,7 +303,8 @@ impl Session {
         };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
-        Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, interrupted })
+        let idle = self.idle();
+        Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, idle, interrupted })
     }
 
     /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule.
@@ -317,14 +343,20 @@ impl Session {
     /// Begins to brake after the timeout, and ends braking when a target arrives.
     fn update_stopping(&mut self, arrived: bool, time: f64) {
         if arrived {
-            self.stopping = false;
-        } else if self.arm.targets.timed_out(time) && !self.stopping {
-            self.begin_stopping();
+            self.stopping = None;
+        } else if let (Some(timeout), None) = (self.arm.targets.timed_out(time), self.stopping) {
+            self.begin_stopping(Idle::TimedOut(timeout));
         }
     }
 
-    fn begin_stopping(&mut self) {
-        self.stopping = true;
+    /// Why no target leads the arm, if none does.
+    fn idle(&self) -> Option<Idle> {
+        let has_none = self.arm.targets.last().is_empty() && self.stopping != Some(Idle::Stopped);
+        if has_none { Some(Idle::NoTarget) } else { self.stopping }
+    }
+
+    fn begin_stopping(&mut self, why: Idle) {
+        self.stopping = Some(why);
         self.follow_from_here();
         self.arm.targets.expect_new();
         if let Some(torques) = &mut self.torques {
@@ -349,7 +381,7 @@ impl Session {
     /// Ends a tick for the way back, and turns the arm towards it or back to the target.
     #[inline]
     fn look_for_way_back(&mut self, found: &mut TickResult, monitor: &mut dyn Monitor) {
-        let Some(way_back) = self.way_back.as_mut().filter(|_| !self.stopping) else { return };
+        let Some(way_back) = self.way_back.as_mut().filter(|_| self.stopping.is_none()) else { return };
         let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
         let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
         let lines = OpenLines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
@@ -375,7 +407,8 @@ impl Session {
     /// Moves by one tick of the stop that was certified with the last command.
     fn brake(&mut self) -> TickResult {
         let mut found = TickResult::at(&self.arm.q);
-        let held = self.safety.as_mut().filter(|_| self.stopping).and_then(|safety| safety.stop_on(self.arm.dt));
+        let held =
+            self.safety.as_mut().filter(|_| self.stopping.is_some()).and_then(|safety| safety.stop_on(self.arm.dt));
         let fastest = || self.arm.limited.as_ref().map(|limited| limited.stopping(&self.arm.q));
         if let Some(next) = held.or_else(fastest) {
             found.q = next;
@@ -409,12 +442,12 @@ impl Session {
 
     /// What keeps the goal from its target; nothing while the arm stops.
     fn holds_goal(&self) -> Option<Holder> {
-        self.safety.as_ref().filter(|_| !self.stopping).and_then(|safety| safety.holds_goal())
+        self.safety.as_ref().filter(|_| self.stopping.is_none()).and_then(|safety| safety.holds_goal())
     }
 
     /// Whether the arm stays at rest because it comes no nearer to its targets.
     fn is_settled(&mut self) -> bool {
-        let moves = self.stopping || self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
+        let moves = self.stopping.is_some() || self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
         match &mut self.settling {
             Some(settling) if !moves => settling.begin_tick(self.arm.targets.last()),
             Some(settling) => {
@@ -463,7 +496,7 @@ impl Session {
 
     /// Changes the command `found` to one that keeps the limits of tips.
     fn keep_pace(&mut self, found: &mut TickResult) {
-        let Some(pace) = self.pace.as_mut().filter(|_| !found.interrupted && !self.stopping) else { return };
+        let Some(pace) = self.pace.as_mut().filter(|_| !found.interrupted && self.stopping.is_none()) else { return };
         if pace.keep(&self.arm.context(), self.safety.as_deref_mut(), &mut found.q) {
             self.note_changed(found);
         }
@@ -472,7 +505,7 @@ impl Session {
     /// Changes the command `found` to one that keeps the torque limits. An arm that stops goes on with its stop, unless masses have changed.
     fn keep_torques(&mut self, settled: bool, found: &mut TickResult) {
         let Some(torques) = &mut self.torques else { return };
-        if found.interrupted || self.stopping && torques.goes_on_with_stop(&self.arm, &found.q) {
+        if found.interrupted || self.stopping.is_some() && torques.goes_on_with_stop(&self.arm, &found.q) {
             return;
         }
         let others = OtherLimits { safety: self.safety.as_deref_mut(), pace: self.pace.as_deref_mut() };
@@ -590,7 +623,7 @@ impl Session {
     /// does not evade approaching obstacles, neither while braking nor afterwards. Returns the duration of the stop (s): 0 for
     /// an arm without acceleration limits.
     pub fn stop(&mut self) -> f64 {
-        self.begin_stopping();
+        self.begin_stopping(Idle::Stopped);
         let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
         let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedState::time_to_stop);
         held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
@@ -615,7 +648,17 @@ impl Session {
         self.start_rule();
         let (position, error) = (self.arm.robot.tip_position(q), error.into());
         let (evaluations, iterations) = (1, 0);
-        Ok(Step { status, error, position, evaluations, iterations, inside_limits, away: None, interrupted: false })
+        Ok(Step {
+            status,
+            error,
+            position,
+            evaluations,
+            iterations,
+            inside_limits,
+            away: None,
+            idle: None,
+            interrupted: false,
+        })
     }
 
     /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
@@ -658,7 +701,7 @@ impl Session {
         self.arm.reset(q, [qd, qdd])?;
         self.arm.set_braking_part(1.0);
         self.torques.iter_mut().for_each(|torques| torques.restart());
-        self.stopping = false;
+        self.stopping = None;
         if let Some(way_back) = &mut self.way_back {
             way_back.restart();
         }
@@ -680,6 +723,6 @@ fn kept_by(keeps: &[Keep], robot: &Robot, arm: &TrackedArm) -> Result<Option<Kep
     if keeps.is_empty() {
         return Ok(None);
     }
-    refuse_broken("start", keeps, robot, &arm.q)?;
+    refuse_broken("start_q", keeps, robot, &arm.q)?;
     Ok(Some(Kept::new(Arc::new(robot.clone()), keeps.to_vec())))
 }

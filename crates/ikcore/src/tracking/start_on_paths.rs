@@ -1,7 +1,7 @@
 //! The configuration from which a track begins where none is given.
 
 use super::tip_paths::TipPaths;
-use super::track_options::TrackOptions;
+use super::track_options::{TRACK, TrackOptions};
 use crate::constraint::{JointTorques, Onto};
 use crate::error::Result;
 use crate::ik::{Prefer, SolveOptions, checked_tasks, reduce, solve_tips};
@@ -23,7 +23,7 @@ pub(super) fn start_on_paths(
 ) -> Result<Vec<f64>> {
     let goals = if options.goals.is_empty() { start_goals(robot, &asked.targets(0)[0]) } else { options.goals.clone() };
     let mut found = first_configuration(robot, asked, limits, options, goals, monitor)?;
-    if let Some(torques) = JointTorques::new(robot, limits.torque(), "track")?
+    if let Some(torques) = JointTorques::new(robot, limits.torque(), TRACK)?
         && torques.too_heavy(&mut torques.point(), &found).is_some()
     {
         let goals = vec![Goal::LeastTorque { relative_to: Some(limits.torque().to_vec()), weight: 1.0 }];

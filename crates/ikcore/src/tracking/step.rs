@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::away::{Away, Way};
+use super::idle::Idle;
 use crate::limits::JointOutside;
 use crate::message::{Message, message};
 use crate::obstacle::{Contact, Sensed};
@@ -31,6 +32,8 @@ pub struct Step {
     pub inside_limits: bool,
     /// What keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
     pub away: Option<Away>,
+    /// Why no target leads the arm, if none does.
+    pub idle: Option<Idle>,
     /// Whether the monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
 }
@@ -62,6 +65,9 @@ impl Step {
             ([], false) => "; a joint is outside its limits and returns".into(),
             _ => JointOutside::in_words(outside, "began"),
         };
+        if let (Some(idle), false) = (self.idle, self.is_obstructed()) {
+            return idle.message(error, &limits);
+        }
         if let (Status::Improved | Status::Capped, Some(away)) = (self.status, self.away) {
             return away.message(error, &limits, joint);
         }
@@ -85,6 +91,11 @@ impl Step {
             _ => String::new(),
         };
         message![format!("{how}, {error} away{limits}{known}: "), advice]
+    }
+
+    /// Whether the status is about where the arm is, target or not.
+    fn is_obstructed(&self) -> bool {
+        matches!(self.status, Status::InCollision | Status::HeldByTorque)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::constraint::{BendScratch, HOLD_AND_SQUARE, JointTorques, Rest, TIGHT,
 use crate::error::Result;
 use crate::limits::Limits;
 use crate::math::majorant::Majorant;
+use crate::message::Message;
 use crate::objective::Point;
 use crate::robot::Robot;
 
@@ -67,12 +68,12 @@ struct StoppedMotion<'a> {
 }
 
 impl StopTorques {
-    /// Certificate of the torque limits of `robot`; `None` without any.
+    /// Certificate of the torque limits of `robot` in the call `method`; `None` without any.
     ///
     /// # Errors
     /// Those of [`Robot::dynamics`], and [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for a base that floats.
-    pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Self>> {
-        let Some(torques) = JointTorques::new(robot, limits.torque(), "track")? else { return Ok(None) };
+    pub fn new(method: &Message, robot: &Robot, limits: &Limits) -> Result<Option<Self>> {
+        let Some(torques) = JointTorques::new(robot, limits.torque(), method.clone())? else { return Ok(None) };
         let (n, point, bend) = (torques.dof(), torques.point(), torques.bend_scratch());
         let (rests, ends, beyond) = (vec![[0.0; 3]; n], Vec::with_capacity(3 * n), Point::from_elem(0.0, n));
         let gradients = vec![0.0; n * n];

@@ -154,9 +154,9 @@ impl TargetStream {
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
     }
 
-    /// Whether no target has arrived for longer than the timeout, at `time` (s).
-    pub fn timed_out(&self, time: f64) -> bool {
-        self.timeout.is_some_and(|timeout| time - self.arrived > timeout)
+    /// The timeout (s), if no target has arrived for longer at `time` (s).
+    pub fn timed_out(&self, time: f64) -> Option<f64> {
+        self.timeout.filter(|timeout| time - self.arrived > *timeout)
     }
 
     /// Ends the tick.

@@ -12,6 +12,7 @@ use crate::constraint::{JointSpan, TipRates};
 use crate::error::Result;
 use crate::limits::{Limits, ROUNDING, TipField};
 use crate::math::vector::write_within;
+use crate::message::Message;
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 use crate::robot::Robot;
@@ -39,13 +40,13 @@ pub(super) struct TipPace {
 }
 
 impl TipPace {
-    /// The limits of the tips of `robot`; `None` without any.
+    /// The limits of the tips of `robot` in the call `method`; `None` without any.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push a tip beyond its speed, and for
     /// a tip that a rotation vector carries.
-    pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
-        let Some(rates) = TipRates::new(robot, limits.tips(), "track")? else { return Ok(None) };
+    pub fn new(method: &Message, robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
+        let Some(rates) = TipRates::new(robot, limits.tips(), method.clone())? else { return Ok(None) };
         require_constant(
             limits,
             "tracking with limits of tips",

@@ -16,7 +16,7 @@ use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
 use crate::math::row_step::{Row, SOFTNESS};
 use crate::math::vector::{dot, write_within};
-use crate::message::{Setting, message};
+use crate::message::{Message, Setting, message};
 use crate::objective::Point;
 use crate::robot::{JointKind, Robot};
 use crate::task::Aims;
@@ -85,8 +85,8 @@ impl TorquePace {
     /// # Errors
     /// [`Error::NoDynamics`]; [`Error::UnsupportedLimit`] for joints without an acceleration limit, for limits that vary over time, and for a
     /// base that floats.
-    pub fn new(robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
-        let Some(stop) = StopTorques::new(robot, limits)? else { return Ok(None) };
+    pub fn new(method: &Message, robot: &Robot, limits: &Limits) -> Result<Option<Box<Self>>> {
+        let Some(stop) = StopTorques::new(method, robot, limits)? else { return Ok(None) };
         let accelerations = limits.field(Field::Acceleration).unwrap_or_default();
         let is_free = |j: usize| accelerations.get(j).is_none_or(|limit| limit.at(0.0) == f64::INFINITY);
         if let Some(joint) = (0..limits.dof()).find(|j| is_free(*j)) {
@@ -97,7 +97,7 @@ impl TorquePace {
                 ),
                 Setting::Limit("acceleration"),
             ];
-            return Err(Error::UnsupportedLimit { field: "torque".into(), method: "track".into(), remedy });
+            return Err(Error::UnsupportedLimit { field: "torque".into(), method: method.clone(), remedy });
         }
         require_constant(
             limits,
@@ -126,7 +126,7 @@ impl TorquePace {
     /// # Errors
     /// [`Error::NoDynamics`]; nothing has changed then.
     pub fn carry(&mut self, robot: &Robot, limits: &Limits) -> Result<()> {
-        if let Some(stop) = StopTorques::new(robot, limits)? {
+        if let Some(stop) = StopTorques::new(&Setting::Session.into(), robot, limits)? {
             self.stop = stop;
         }
         self.restart();

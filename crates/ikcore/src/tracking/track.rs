@@ -5,7 +5,7 @@ use super::record::Record;
 use super::session::Session;
 use super::start_on_paths::start_on_paths;
 use super::tip_paths::TipPaths;
-use super::track_options::TrackOptions;
+use super::track_options::{TRACK, TrackOptions};
 use crate::error::{Error, Result};
 use crate::kinematics::ReachShortfall;
 use crate::message::{Setting, message};
@@ -25,7 +25,7 @@ pub fn track(
     options: &TrackOptions,
     monitor: &mut dyn Monitor,
 ) -> Result<Record> {
-    robot.require_one_tip("track")?;
+    robot.require_one_tip(TRACK)?;
     track_tips(robot, &TipPaths { tips: &[], paths: std::slice::from_ref(path) }, start, options, monitor)
 }
 
@@ -47,7 +47,7 @@ pub fn track_tips(
         let does = " is for one tip: leave it out, or bring the arms to the paths first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });
     }
-    let limits = options.limits_for(robot)?;
+    let limits = options.limits_for(robot, &TRACK.into())?;
     limits.validate(first.dt(), first.len() - 1)?;
     options.require_tips(robot)?;
     let only = options.only_task()?; // checked before a start is solved with other tolerances
@@ -55,7 +55,7 @@ pub fn track_tips(
         Some(q) => q.to_vec(),
         None => start_on_paths(robot, asked, &limits, options, monitor)?,
     };
-    let mut session = Session::new(robot, &start, first.dt(), options)?;
+    let mut session = Session::begun_by(&TRACK.into(), robot, &start, first.dt(), options)?;
     if options.ease && session.space().is_some() {
         let does = " is not kept clear of obstacles: leave one of the two out, or plan to the path first";
         return Err(Error::Contradiction { problem: message!["the approach of ", Setting::Ease, does] });

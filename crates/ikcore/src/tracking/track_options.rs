@@ -9,10 +9,13 @@ use crate::error::{Error, Result};
 use crate::ik::joint_weights;
 use crate::limits::{LimitAt, Limits, StartSlack, TipField};
 use crate::math::JointWeights;
-use crate::message::{Setting, message};
+use crate::message::{Message, Setting, message};
 use crate::obstacle::Surroundings;
 use crate::robot::Robot;
 use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
+
+/// Name in messages of the call that follows a whole path.
+pub(super) const TRACK: &str = "track";
 
 /// Largest effect of one joint in a weighted step, relative to that of the tip; less under acceleration or jerk limits, where light
 /// joints near a singularity have to slow down in time.
@@ -115,16 +118,16 @@ impl TrackOptions {
         Ok(weights.map(|weights| Arc::new(weights.fading_at(largest_effect))))
     }
 
-    /// Limits in force for `robot`.
+    /// Limits in force for `robot` in the call `method`.
     ///
     /// # Errors
     /// [`Error::NoPace`] for a joint that nothing slows down, unless infinite velocity limits were given;
-    /// [`Error::WrongLength`].
-    pub(super) fn limits_for(&self, robot: &Robot) -> Result<Limits> {
+    /// [`Error::WrongLength`]; [`Error::UnsupportedLimit`] for accelerations of tips.
+    pub(super) fn limits_for(&self, robot: &Robot, method: &Message) -> Result<Limits> {
         let limits = self.limits.clone().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
         limits.require_pace_or_consent()?;
-        limits.refuse_tips(&[TipField::Acceleration], "track", "a plan keeps them")?;
+        limits.refuse_tips(&[TipField::Acceleration], method.clone(), "plan the motion, which keeps them")?;
         Ok(limits)
     }
 }

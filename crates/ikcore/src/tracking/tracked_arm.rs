@@ -50,12 +50,12 @@ pub(super) struct TrackedArm {
 }
 
 impl TrackedArm {
-    /// Arm at rest at `start` (n,) at t = 0, with ticks of `dt` (s).
+    /// Arm at rest at `start` (n,) at t = 0, with ticks of `dt` (s), for the call `method`.
     ///
     /// # Errors
     /// Errors of wrong tasks, limits or settings of targets, and of a start outside limits or region.
-    pub fn new(robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
-        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot)?);
+    pub fn new(method: &Message, robot: &Robot, start: &[f64], dt: f64, options: &TrackOptions) -> Result<Self> {
+        let (tasks, limits) = (CurrentTasks::new(robot, options)?, options.limits_for(robot, method)?);
         limits.validate(dt, 0)?;
         let limited = LimitedState::new(&limits, dt);
         let repeated = options.rule.extrapolates(limited.is_some()).then(|| RepeatedTargets::new(dt));
@@ -63,8 +63,8 @@ impl TrackedArm {
         if tasks.region().is_some() {
             require_room_to_stop(&limits)?;
         }
-        robot.check("start", start)?;
-        let AdmittedStart { q, outside } = limits.admit_start(Some(robot), "start", start, &options.start_slack)?;
+        robot.check("start_q", start)?;
+        let AdmittedStart { q, outside } = limits.admit_start(Some(robot), "start_q", start, &options.start_slack)?;
         let robot_as_given = robot.clone();
         let robot = Arc::new(options.task.map_or(Ok(None), |task| task.robot(robot))?.unwrap_or_else(|| robot.clone()));
         let weights = options.weights_for(&robot, limited.is_some())?;
@@ -86,7 +86,7 @@ impl TrackedArm {
             before: Point::from_slice(&q),
             last_value: None,
         };
-        arm.require_in_region("start", &q)?;
+        arm.require_in_region("start_q", &q)?;
         Ok(arm)
     }
 

@@ -40,6 +40,9 @@ impl TryFrom<(Vec<String>, Knots, Vec<Coefficients>)> for Trajectory {
 }
 
 impl Trajectory {
+    /// Name of a motion in messages.
+    pub(crate) const WHAT: &str = "trajectory";
+
     /// The motion of these `joints` (names) with these `coefficients`, by segment and then by joint, between `knots`
     /// (s) that start at zero and increase.
     ///
@@ -50,7 +53,7 @@ impl Trajectory {
         if joints.is_empty() {
             return Err(Error::InvalidTrajectory { problem: "it needs at least 1 joint".into() });
         }
-        let knots = Knots::new("trajectory times", knots)?;
+        let knots = Knots::new(&format!("{} times", Self::WHAT), knots)?;
         let (n, segments) = (joints.len(), knots.segments());
         if coefficients.len() != segments * n {
             let what = "trajectory coefficients".into();

@@ -44,15 +44,18 @@ impl PyMoveReport {
         PyTuple::new(py, self.0.bound_by.iter().cloned().map(PySpeedBound))
     }
 
+    /// What the tip does on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests.
+    #[getter]
+    fn message(&self) -> String {
+        self.0.message()
+    }
+
     fn __repr__(&self) -> String {
-        let MoveReport { name, start, end, speed, bound_by } = &self.0;
+        let MoveReport { name, start, end, bound_by, .. } = &self.0;
         let name = name.as_ref().map_or_else(String::new, |name| format!(" '{name}'"));
         let bound: Vec<String> = bound_by.iter().map(words).collect();
         let bound = if bound.is_empty() { String::new() } else { format!(", bound by {}", bound.join(", ")) };
-        // A wait, and a move that its blends take whole.
-        let fastest =
-            if *speed > 0.0 { format!("up to {speed:.4} m/s between blends") } else { "no way between blends".into() };
-        format!("<MoveReport{name}: {start:.3} to {end:.3} s, {fastest}{bound}>")
+        format!("<MoveReport{name}: {start:.3} to {end:.3} s, {}{bound}>", self.0.message())
     }
 }
 

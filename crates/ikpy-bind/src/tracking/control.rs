@@ -15,6 +15,7 @@ use super::znnbas::PyZnnbas;
 use crate::convert::{array, copied, count, counted, own, rigid_rows, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
+use crate::pickling;
 use crate::solver::PyBroydenBas;
 use crate::traversal::traversed;
 
@@ -60,6 +61,11 @@ impl PyControlSession {
             let motion = [session.q().to_vec(), session.qd().to_vec()];
             PyStep::new(py, step, motion, self.limits.clone_ref(py), watch.elapsed())
         }))
+    }
+
+    /// Names the way to another session.
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(pickling::in_progress("ControlSession", "begin another one at the q of this one"))
     }
 
     fn __repr__(&self) -> String {

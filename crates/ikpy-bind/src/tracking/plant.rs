@@ -118,7 +118,7 @@ impl PyKinematicPlant {
 impl PyKinematicPlant {
     /// Returns a plant at the start of its noise; an error unless `start` fits the robot.
     pub fn fresh(&self, start: &[f64]) -> PyResult<KinematicPlant> {
-        self.core.robot().check("start", start).map_err(raise)?;
+        self.core.robot().check("start_q", start).map_err(raise)?;
         Ok(self.core.clone())
     }
 }

@@ -217,7 +217,7 @@ impl PyStep {
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
         let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        let lock = self.lock.as_ref().filter(|_| self.core.status == Status::Capped);
+        let lock = self.lock.as_ref().filter(|_| self.core.status == Status::Capped && self.core.idle.is_none());
         let advice = match (lock, nearest) {
             (Some(lock), _) => Message::clone(lock),
             (_, Some(nearest)) => self.core.advice_near(&nearest.contact),

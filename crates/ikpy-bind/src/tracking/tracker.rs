@@ -25,6 +25,7 @@ use crate::keep::{PyKeep, read_keeps};
 use crate::limits::{PyLimits, Sampling, limits_of_call};
 use crate::monitor::watched_with_interpreter;
 use crate::obstacle::MovingObstacles;
+use crate::pickling;
 use crate::robot::PyRobot;
 use crate::start_gate::{Outside, plain};
 use crate::tip_keys::TipKeys;
@@ -251,7 +252,7 @@ impl PyTracker {
         let held_by = match core.status {
             Status::HeldByConstraint => session.tightest(),
             Status::HeldByTorque => session.held_by_torque(),
-            Status::LevelGivenUp | Status::Capped => session.levels_in_words(),
+            Status::LevelGivenUp | Status::Capped if core.idle.is_none() => session.levels_in_words(),
             _ => None,
         };
         let step = step.among(space, q).of_tips(tips).naming(joints).held_by(held_by);
@@ -334,6 +335,11 @@ impl PyTracker {
     fn keep<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let (session, robot) = (self.session(), &self.first.get().core);
         PyTuple::new(py, session.keeps().iter().map(|keep| PyKeep::from_core(keep, robot)))
+    }
+
+    /// Names the way to another tracker in the same state.
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(pickling::in_progress("Tracker", "make another one, then reset it to q and qd of the last step"))
     }
 
     fn __repr__(&self) -> String {

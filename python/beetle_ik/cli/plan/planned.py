@@ -128,8 +128,7 @@ def _print(plan: Plan, summary: dict[str, Any], out: Path | None) -> None:
         rows.append(("largest tilt [rad]", f"{summary['tilt']:.4g}"))
     for i, move in enumerate(plan.moves):
         named = f"move {i}" if move.name is None else f"move {i} '{move.name}'"
-        fastest = f"up to {move.speed:.4g} m/s between blends" if move.speed > 0.0 else "no way between blends"
-        rows.append((named, f"{move.start:.3f} to {move.end:.3f} s, {fastest}"))
+        rows.append((named, f"{move.start:.3f} to {move.end:.3f} s, {move.message}"))
     for i, each in enumerate(plan.breaks):
         place = f"{each.at:.4g}" if each.at == each.until else f"{each.at:.4g} to {each.until:.4g}"
         rows.append((f"break {i}", f"at {place}, {each.start:.3f} to {each.end:.3f} s: {each.reason}"))

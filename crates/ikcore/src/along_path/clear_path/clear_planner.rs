@@ -55,7 +55,7 @@ pub(crate) fn along_path(
     monitor: &mut dyn Monitor,
 ) -> Result<Plan> {
     if let (Some(q), Some(space)) = (&problem.options.start, space) {
-        refuse_collision("start", space, q)?;
+        refuse_collision("start_q", space, q)?;
     }
     let mut planner = ClearPlanner::new(problem, space, problem.tip_path.knots(intervals(problem.tip_path)));
     match (planner.first_sequence()?, space) {

@@ -151,11 +151,10 @@ impl Interpolation<'_> {
             let is_coarse = |i: usize| {
                 checkpoint_at(i)?;
                 let ends = [waypoints.knots[i], waypoints.knots[i + 1]];
-                let mut swing: f64 = 0.0;
-                let off = deviation.between(ends, SAMPLES, |q| swing = swing.max(self.excess(q)));
                 // A given start may be off the path.
-                let is_off = off > ENOUGH * accuracy && (i > 0 || off > ENOUGH * accuracy + deviation.at(ends[0]));
-                Ok((is_off || swing > SWING * accuracy).then_some(i))
+                let most = ENOUGH * accuracy + if i == 0 { deviation.at(ends[0]) } else { 0.0 };
+                let is_too_much = |q: &[f64], off: f64| off > most || self.excess(q) > SWING * accuracy;
+                Ok(deviation.any_between(ends, SAMPLES, is_too_much).then_some(i))
             };
             let intervals = (0..settled.len()).filter(|i| !settled[*i]);
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;

@@ -4,7 +4,7 @@ use super::segment_geometry::turn;
 use super::tip_curve::TipPath;
 
 /// A change of direction above this (rad) within a short part of the path is a corner; below it, a bend.
-const CORNER: f64 = 0.5;
+pub(super) const CORNER: f64 = 0.5;
 
 /// Half the length of that part, relative to the path. It contains one corner at most, and is long enough that noise in
 /// measured points does not count as one.

@@ -76,7 +76,7 @@ pub fn self_motion(
     let context = SolveContext::new(robot, &each)?;
     let targets = context.read(std::slice::from_ref(target))?;
     require_curves(robot, &targets[0])?;
-    start.as_ref().map_or(Ok(()), |q| robot.check("start", q))?;
+    start.as_ref().map_or(Ok(()), |q| robot.check("start_q", q))?;
     let mut problem = context.problem(&targets);
     let mut rng = rng::stream(*seed, 0);
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);

@@ -14,6 +14,9 @@ use crate::tracking::record::Accepted;
 use crate::tracking::step::Step;
 use crate::tracking::tip_pose::TipPose;
 
+/// Advice about limits that need a model of the arm.
+const NO_MODEL: &str = "follow the path with a robot, because a controller knows nothing of the arm";
+
 /// Control session of a model-free controller. [`command`](Self::command) returns the next command for the arm,
 /// [`observe`](Self::observe) takes the position measured there. A tick ends when the controller needs no further measurement.
 ///
@@ -68,21 +71,36 @@ impl ControlSession {
         tolerance: Tolerance,
         seed: u64,
     ) -> Result<Self> {
+        Self::begun_by("session", controller, start, dt, limits, (tolerance, seed))
+    }
+
+    /// [`new`](Self::new) for the call `method`, which messages name.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(in crate::tracking) fn begun_by(
+        method: &str,
+        controller: &Controller,
+        start: &[f64],
+        dt: f64,
+        limits: Limits,
+        (tolerance, seed): (Tolerance, u64),
+    ) -> Result<Self> {
         require_positive("dt", dt)?;
         require_positive("position_tolerance", tolerance.position)?;
         require_positive("rotation_tolerance", tolerance.rotation)?;
         if start.is_empty() || start.len() > MAX_DOF {
             let expected = format!("1 to {MAX_DOF} joints");
-            return Err(Error::WrongLength { what: "start".into(), expected, got: start.len() });
+            return Err(Error::WrongLength { what: "start_q".into(), expected, got: start.len() });
         }
-        require_finite("start", start, |j| format!("joint {j}"))?;
+        require_finite("start_q", start, |j| format!("joint {j}"))?;
         controller.validate(start.len())?;
         limits.validate(dt, 0)?;
         let remedy = "a controller keeps position and velocity limits; leave it out";
-        limits.require_none(&[Field::Acceleration, Field::Jerk], "track_model_free", remedy)?;
-        limits.refuse_tips(&TipField::ALL, "track_model_free", "a controller knows nothing of the arm")?;
-        limits.refuse_torque("track_model_free", "a controller knows nothing of the arm")?;
-        let AdmittedStart { q, outside } = limits.admit_start(None, "start", start, &StartSlack::default())?;
+        limits.require_none(&[Field::Acceleration, Field::Jerk], method, remedy)?;
+        limits.refuse_tips(&TipField::ALL, method, NO_MODEL)?;
+        limits.refuse_torque(method, NO_MODEL)?;
+        let AdmittedStart { q, outside } = limits.admit_start(None, "start_q", start, &StartSlack::default())?;
         let start = &q[..];
         Ok(Self {
             running: controller.start(start, dt, tolerance),
@@ -229,6 +247,7 @@ impl ControlSession {
             iterations: evaluations,
             inside_limits: self.inside_limits,
             away: None,
+            idle: None,
             interrupted: false,
         }
     }

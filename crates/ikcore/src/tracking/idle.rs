@@ -1,0 +1,37 @@
+//! Why no target leads an arm, as a step says it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::message::Message;
+use crate::task::TipError;
+use crate::wording::number;
+
+/// Why no target leads the arm in a tick: it brakes, then rests.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Idle {
+    /// None has arrived yet.
+    NoTarget,
+    /// The arm was told to stop.
+    Stopped,
+    /// None has arrived for longer than this timeout (s).
+    TimedOut(f64),
+}
+
+impl Idle {
+    /// Sentence on an arm that is `error` away from its last target, if it had one.
+    pub(super) fn message(self, error: &TipError, limits: &str) -> Message {
+        let has_target = !(error.position.is_nan() && error.rotation.is_nan());
+        let away = if has_target { format!(", {error} away from the last target") } else { String::new() };
+        match self {
+            Self::NoTarget => format!("no target yet{limits}: the arm comes to rest and waits for one"),
+            Self::Stopped => format!("stopped by stop(){away}{limits}: the next target makes it go on"),
+            Self::TimedOut(timeout) => {
+                format!(
+                    "no target for {} s{away}{limits}: the arm comes to rest and waits for the next one",
+                    number(timeout)
+                )
+            }
+        }
+        .into()
+    }
+}
