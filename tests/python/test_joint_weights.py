@@ -263,6 +263,27 @@ def test_a_tracker_with_goals_moves_light_joints_for_them() -> None:
     assert moved[1] < 0.1 * moved[0]
 
 
+@pytest.mark.parametrize("whole", [True, False])
+@pytest.mark.parametrize("weight", [10.0, 100.0, 1e4])
+@pytest.mark.parametrize(
+    ("name", "arm"),
+    [("panda", ARM), ("gen3", [0, 0.4, 0, 1.8, 0, 0.9, 0]), ("ur5e", [0, -1.2, 1.6, -0.4, 1.57, 0])],
+)
+def test_a_stretched_arm_and_its_heavy_base_do_not_chatter(name: str, arm: Any, weight: float, whole: bool) -> None:
+    start = np.r_[0, 0, 0, arm]
+    robot = bik.Robot.named(name).with_mobile_base(
+        "planar", lower=[-3, -3, -np.pi], upper=[3, 3, np.pi], velocity=[0.8, 0.8, 1.0]
+    )
+    tracker = bik.Tracker(robot, start, dt=0.02, joint_weights=np.r_[np.full(3, weight), np.ones(len(arm))])
+    targets = [shifted(robot, start, ahead, 0.0, 0.0) for ahead in np.linspace(0.0, 1.5, 300)]
+    steps = [tracker.step(target if whole else target[:3, 3]) for target in targets]
+    assert max(step.position_error for step in steps) < 1e-5
+    moved = np.diff([step.q for step in steps], axis=0)
+    # Turns of direction from tick to tick by more than 1e-4 rad or m.
+    assert (moved[1:] * moved[:-1] < -1e-8).sum() < 15
+    assert np.abs(moved[:, 0]).sum() < 1.5
+
+
 def test_a_track_minds_the_weights() -> None:
     path = bik.paths.circle(MOBILE.fk(START)[:3, 3], 0.05, 2.0)
     plain = bik.track(MOBILE, path, START, dt=0.01)

@@ -77,6 +77,12 @@ impl JointWeights {
         Self { largest_effect, ..self }
     }
 
+    /// The weights, lowered to `largest` at most; `None` if all are equal then.
+    pub(crate) fn at_most(&self, largest: f64) -> Option<Self> {
+        let relative = self.relative.iter().map(|weight| weight.min(largest)).collect();
+        (largest > 1.0).then_some(Self { relative, ..*self })
+    }
+
     /// The weights (n,).
     pub(crate) fn as_slice(&self) -> &[f64] {
         &self.relative

@@ -12,7 +12,7 @@
 //! | `columns` | columns of Jacobians |
 //! | `gram`, `ldl`, `banded`, `singular_values` | small linear systems, and banded ones |
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
-//! | `joint_weights` | steps by the joints that cost least |
+//! | `joint_weights`, `overshoot` | steps by the joints that cost least, and weights with which ticks of them overshoot |
 //! | `ranked_step`, `level_step` | step for two objectives, one before the other; for any number in order |
 //! | `secant` | Jacobian estimated from differences |
 //! | `majorant`, `bernstein` | bounds of Taylor coefficients; polynomials within their control points |
@@ -41,6 +41,7 @@ pub(crate) mod level_step;
 pub(crate) mod logarithm;
 pub(crate) mod majorant;
 pub mod one_joint;
+pub(crate) mod overshoot;
 pub mod polynomial;
 pub mod pose;
 pub(crate) mod ranked_step;

@@ -7,12 +7,15 @@
 //! which one part comes first is then met in that order. Joints with weights approach a far target that stands still first: heavy
 //! ones would otherwise make what the others cannot do in one tick.
 
+use std::borrow::Cow;
+
 use super::approach::Approach;
+use super::soft_step::SoftStep;
 use super::tick::{Tick, TickResult};
 use crate::ik::RankedDescent;
 use crate::math::box_step::least_damping;
 use crate::math::{Columns, Frame};
-use crate::objective::{Point, TaskBlock};
+use crate::objective::{Bounds, Point, TaskBlock};
 use crate::robot::Robot;
 use crate::solver::Stop;
 use crate::task::{Assessment, First, SquaredError};
@@ -117,10 +120,13 @@ impl MidStepState {
     fn towards_goals(&mut self, found: &mut TickResult, tick: &mut Tick<'_>) -> bool {
         let Some(preferred) = tick.preferred(&found.q) else { return false };
         let mut trial = found.clone();
-        self.step(&mut trial, tick, self.first_model(), Some(&preferred));
+        self.step(&mut trial, tick, self.first_model(), tick.bounds(), Some(&preferred));
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
         self.accept_trial(&mut trial, assessment);
-        while !trial.is_solved() && trial.iterations < MOST_STEPS && self.lowers(&mut trial, tick, Model::Here) {}
+        while !trial.is_solved()
+            && trial.iterations < MOST_STEPS
+            && self.lowers(&mut trial, tick, Model::Here, tick.bounds())
+        {}
         found.evaluations = trial.evaluations;
         if trial.is_solved() {
             *found = trial;
@@ -132,11 +138,17 @@ impl MidStepState {
     fn gauss_newton(&mut self, found: &mut TickResult, tick: &Tick<'_>) -> bool {
         let mut moved = false;
         let mut model = self.first_model();
+        let mut bounds = Cow::Borrowed(tick.bounds());
         // At least one step: an arm that waits until it is out of its band would move in jerks.
         while found.iterations == 0 || (found.iterations < MOST_STEPS && !found.is_solved()) {
-            model = match (self.lowers(found, tick, model), model) {
+            model = match (self.lowers(found, tick, model, &bounds), model) {
                 (true, _) => Model::Here,
                 (false, Model::MidTick) => Model::Begin,
+                // All joints together may do what weights have left to few.
+                (false, _) if bounds.weights().is_some() => {
+                    bounds = Cow::Owned(bounds.into_owned().weighted(None));
+                    model
+                }
                 (false, Model::Begin | Model::Here) => break,
             };
             moved |= model == Model::Here;
@@ -150,8 +162,8 @@ impl MidStepState {
     }
 
     /// Takes one step from `found` and keeps it if it lowers the error. Returns whether it does.
-    fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model) -> bool {
-        self.step(found, tick, model, None);
+    fn lowers(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model, bounds: &Bounds) -> bool {
+        self.step(found, tick, model, bounds, None);
         let assessment = tick.target.assess_tip(&self.trial.tip, tick.criterion);
         let lower = assessment.score.value < found.value();
         if lower {
@@ -169,7 +181,14 @@ impl MidStepState {
 
     /// Sets the trial to the configuration that meets the target by the `model`, with the free joints as near as
     /// possible to `preferred`.
-    fn step(&mut self, found: &mut TickResult, tick: &Tick<'_>, model: Model, preferred: Option<&[f64]>) {
+    fn step(
+        &mut self,
+        found: &mut TickResult,
+        tick: &Tick<'_>,
+        model: Model,
+        bounds: &Bounds,
+        preferred: Option<&[f64]>,
+    ) {
         let n = found.q.len();
         let current = match model {
             Model::Here => &self.here,
@@ -182,14 +201,11 @@ impl MidStepState {
             Model::Begin | Model::Here => columns.copy_from_slice(&current.columns[..n]),
         }
         tick.target.linearize_tip(&current.tip, n, tick.criterion, &mut self.linearization);
-        let (step, bounds) = (&self.linearization, tick.bounds());
-        let lambda = least_damping(&step.columns[..n]);
-        let to = &mut self.trial.q;
-        to.resize(n, 0.0);
-        match preferred {
-            None => step.write_step(lambda, &found.q, bounds, to),
-            Some(preferred) => step.write_step_near(preferred, lambda, &found.q, bounds, to),
-        }
+        let model = &*self.linearization;
+        let lambda = least_damping(&model.columns[..n]);
+        self.trial.q.resize(n, 0.0);
+        let step = SoftStep { model, columns: &current.columns[..n], lambda, from: &found.q, preferred };
+        step.write(bounds, &mut self.trial.q);
         self.trial.update(tick.context.robot);
         found.evaluations += 1;
         found.iterations += 1;

@@ -5,6 +5,7 @@
 //! | `tick_rule` | [`TickRule`]: choice of rule, and the running rule |
 //! | `tick` | input and result of a rule |
 //! | `mid_step` | the model-based rule, the default |
+//! | `soft_step` | its step by the joints that cost least, whose weights do not make ticks overshoot |
 //! | `goal_pursuit` | the model-based rule under acceleration and jerk limits |
 //! | `approach` | proportional approach to a target that one tick cannot reach |
 //! | `tip_step` | the model-based rule for several tips |
@@ -16,6 +17,7 @@ mod approach;
 mod goal_pursuit;
 mod joint_move;
 mod mid_step;
+mod soft_step;
 mod tick;
 mod tick_rule;
 mod tip_step;
