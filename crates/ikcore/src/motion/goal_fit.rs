@@ -62,6 +62,11 @@ impl GoalFit {
         self.moments[0] += 1.0;
     }
 
+    /// Weighted mean of the times from the samples to the last one (ticks).
+    pub fn mean_age(&self) -> f64 {
+        -self.moments[1] / self.moments[0]
+    }
+
     /// The gains of the last sample.
     pub fn gains(&self, degree: Degree) -> Gains {
         let [position, velocity, acceleration] = self.solve([1.0, 0.0, 0.0], degree);
@@ -73,6 +78,12 @@ impl GoalFit {
         let row = [1.0, ahead, 0.5 * ahead * ahead];
         let solution = self.solve(row, degree);
         row.iter().zip(solution).map(|(row, x)| row * x).sum::<f64>().max(0.0).sqrt()
+    }
+
+    /// Standard deviation of the velocity `ahead` ticks after the last sample, in those of a sample (1/tick).
+    pub fn deviation_of_velocity(&self, ahead: f64, degree: Degree) -> f64 {
+        let [_, velocity, acceleration] = self.solve([0.0, 1.0, ahead], degree);
+        (velocity + ahead * acceleration).max(0.0).sqrt()
     }
 
     /// Solves the normal equations of the samples; a coefficient that they leave open is zero.

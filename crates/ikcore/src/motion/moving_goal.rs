@@ -35,6 +35,9 @@ const MOVES_ON: f64 = 2.0;
 /// Longest time without a sample for which the goal keeps its velocity (ticks), for joints that are slow to reach full speed.
 const LONGEST: f64 = 300.0;
 
+/// Standard deviations of noise that a velocity must exceed to be trusted without samples.
+const DOUBTED: f64 = 2.0;
+
 /// A sample of the goal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GoalSample<'a> {
@@ -68,6 +71,8 @@ pub(crate) struct MovingGoal {
     noise: NoiseLevel,
     /// Uncertainty of the goal in standard deviations of a sample.
     uncertainty: f64,
+    /// Uncertainty of its velocity where the next sample is overdue, in standard deviations of a sample (1/tick).
+    velocity_uncertainty: f64,
     /// Fraction of a surprise by which the last sample corrected the position.
     corrected: f64,
 }
@@ -90,6 +95,7 @@ impl MovingGoal {
             memory: GoalMemory::new(q.len()),
             noise: NoiseLevel::new(),
             uncertainty: 1.0,
+            velocity_uncertainty: 0.0,
             corrected: 1.0,
         };
         // A step is the velocity at the middle of its tick.
@@ -130,12 +136,6 @@ impl MovingGoal {
         self.memory.samples() * self.interval
     }
 
-    /// Ticks from the first sample that the goal remembers to the last; without noise, from the last but one.
-    pub fn remembered(&self) -> f64 {
-        let memory = self.memory.samples();
-        self.samples.map_or(memory, |samples| memory.min(samples as f64)).max(1.0) * self.interval
-    }
-
     /// Root mean square of the corrections of its position that noise causes.
     pub fn jitter(&self) -> f64 {
         self.corrected * self.noise()
@@ -163,7 +163,7 @@ impl MovingGoal {
             return [q + t * (velocity + 0.5 * t * acceleration), acceleration];
         }
         let q = q + on_fit * (velocity + 0.5 * on_fit * acceleration);
-        let velocity = velocity + on_fit * acceleration;
+        let velocity = self.trusted(j, velocity + on_fit * acceleration, scales);
         let (t, even) = (t - on_fit, self.time_to_move_on(scales) - self.interval);
         if t <= even {
             return [q + t * velocity, 0.0];
@@ -175,6 +175,12 @@ impl MovingGoal {
         if t < stop { [q + t * (velocity + 0.5 * t * change), change] } else { [q + 0.5 * stop * velocity, 0.0] }
     }
 
+    /// The velocity of joint `j` without a sample: the less of it, the more of it may be noise, as a Wiener filter weighs it.
+    fn trusted(&self, j: usize, velocity: f64, scales: &Scales) -> f64 {
+        let noise = DOUBTED * self.velocity_uncertainty * self.noise.suspected_of(j) * scales.change[j];
+        if noise > 0.0 { velocity * (1.0 + (noise / velocity).powi(2)).recip() } else { velocity }
+    }
+
     /// Ticks after the last sample for which the goal keeps its velocity: as long as the arm takes to full speed. An arm that stopped at
     /// once would lose more than the target moves during the gap. As long as the noise is unknown, the velocity may be noise.
     fn time_to_move_on(&self, scales: &Scales) -> f64 {
@@ -182,9 +188,11 @@ impl MovingGoal {
         to_full_speed.max(MOVES_ON * self.interval)
     }
 
-    /// Writes the configuration before the samples that the goal remembers, at `time` or earlier: at the last one at the latest.
-    pub fn remembered_from(&self, time: f64, scales: &Scales, out: &mut Point) {
-        self.expected((time - self.remembered()).min(self.last_sample), scales, out);
+    /// Writes the configuration before the samples that the goal remembers: at the last one without noise. It is never before the samples
+    /// themselves, where a parabola would turn back.
+    pub fn remembered_from(&self, scales: &Scales, out: &mut Point) {
+        let factor = if self.degree() == Degree::Line { 2.0 } else { 1.0 };
+        self.expected(self.last_sample - factor * self.fit.mean_age(), scales, out);
     }
 
     fn move_to_now(&mut self, scales: &Scales) {
@@ -247,6 +255,7 @@ impl MovingGoal {
         let gains = self.fit.gains(self.degree());
         self.apply(gains, sample);
         self.uncertainty = self.fit.deviation(self.now - time, self.degree());
+        self.velocity_uncertainty = self.fit.deviation_of_velocity(self.now - time + self.interval, self.degree());
         self.corrected = gains.position;
     }
 

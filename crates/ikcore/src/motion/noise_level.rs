@@ -65,6 +65,17 @@ impl NoiseLevel {
         self.fractions.get(j).map_or(0.0, |fraction| self.level * (self.fractions.len() as f64 * fraction).sqrt())
     }
 
+    /// Standard deviation of what may be noise of entry `j`: as long as the noise is unknown, the mean of the differences so far.
+    pub fn suspected_of(&self, j: usize) -> f64 {
+        if self.is_known() || self.count <= CUBIC {
+            return self.level_of(j);
+        }
+        let seen = [PARABOLA, CUBIC].map(|first| (self.count - first).min(WINDOW) as f64);
+        let mean = |kind: usize| self.differences[kind].iter().sum::<f64>() / seen[kind];
+        let fraction = self.fractions.get(j).copied().unwrap_or_default();
+        mean(0).min(mean(1)) * (self.fractions.len() as f64 * fraction).sqrt()
+    }
+
     /// Adds a sample at `time`; entries are measured in units of `scales`.
     pub fn add(&mut self, sample: &[f64], time: f64, scales: &[f64]) {
         let count = self.count;

@@ -94,7 +94,7 @@ impl GoalPursuit {
         }
         let anew = (aims.has_pairs() && self.has_no_way(self.away(q))).then_some(q);
         let positions = tick.context.positions();
-        self.solve(anew, time, &positions, &mut found, tick);
+        self.solve(anew, &positions, &mut found, tick);
         self.solve_in_order(&positions, &mut found, tick);
         found
     }
@@ -185,16 +185,9 @@ impl GoalPursuit {
         waited
     }
 
-    /// Solves for the `sample` of the target at `time` (in ticks): the configuration that meets it nearest to the predicted one
-    /// or, if given, nearest to the start `anew`.
-    fn solve(
-        &mut self,
-        anew: Option<&[f64]>,
-        time: f64,
-        positions: &Bounds,
-        found: &mut TickResult,
-        tick: &mut Tick<'_>,
-    ) {
+    /// Solves for the `sample` of the target: the configuration that meets it nearest to the predicted one or, if given, nearest to the
+    /// start `anew`.
+    fn solve(&mut self, anew: Option<&[f64]>, positions: &Bounds, found: &mut TickResult, tick: &mut Tick<'_>) {
         let n = self.expected.len();
         self.sample = Point::from_slice(anew.unwrap_or(&self.expected));
         positions.clip(&mut self.sample);
@@ -206,7 +199,7 @@ impl GoalPursuit {
                 break;
             }
             (lowest, begin) = (value, self.sample.clone());
-            let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(time, positions, tick));
+            let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(positions, tick));
             let least = self.linearization.least_damping(n);
             let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
             match preferred {
@@ -220,22 +213,16 @@ impl GoalPursuit {
             }
         }
         self.sample = begin;
-        self.begin_at_rest((time, lowest), positions, found, tick);
+        self.begin_at_rest(lowest, positions, found, tick);
         self.descend(positions, found, tick);
     }
 
     /// Moves `sample` back to the goal before its remembered motion, unless that motion has lowered the error below `lowest`:
     /// out of reach, the goal would otherwise drift along the self-motion for ever.
-    fn begin_at_rest(
-        &mut self,
-        (time, lowest): (f64, f64),
-        positions: &Bounds,
-        found: &mut TickResult,
-        tick: &Tick<'_>,
-    ) {
+    fn begin_at_rest(&mut self, lowest: f64, positions: &Bounds, found: &mut TickResult, tick: &Tick<'_>) {
         let (Some(goal), Some(motion)) = (&self.goal, tick.context.limited) else { return };
         let moved = self.sample.clone();
-        goal.remembered_from(time, motion.scales(), &mut self.sample);
+        goal.remembered_from(motion.scales(), &mut self.sample);
         positions.clip(&mut self.sample);
         if self.linearize(found, tick) > lowest * (1.0 + NO_GAIN) {
             self.sample = moved;
@@ -250,13 +237,13 @@ impl GoalPursuit {
         aims.linearize(robot, &self.sample, &mut self.linearization, |_| ()).score.value
     }
 
-    /// Preferred configuration at `time` where the target leaves the joints free: the goal before the samples that it
+    /// Preferred configuration where the target leaves the joints free: the goal before the samples that it
     /// remembers, moved along the negative gradient of the null-space goals. Motion in the null space is not extrapolated,
     /// since no target would ever stop it; a filter with a long memory would sustain it even from one sample ago.
-    fn preferred(&self, time: f64, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
+    fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
         let mut preferred = self.sample.clone();
         if let (Some(goal), Some(motion)) = (&self.goal, tick.context.limited) {
-            goal.remembered_from(time, motion.scales(), &mut preferred);
+            goal.remembered_from(motion.scales(), &mut preferred);
         }
         if !tick.goals.is_empty() {
             let mut slope = preferred.clone();
