@@ -138,7 +138,7 @@ def test_mistakes_are_named() -> None:
 
 
 def test_poses_sampled_from_a_curve_are_followed_for_many_turns() -> None:
-    """Between samples 0.3 rad apart the shortest turn is up to 1e-2 rad off the curve, far more than the positions are."""
+    """Between samples 0.3 rad apart the shortest turn is up to 1e-2 rad off the curve, more than the positions."""
     turn, height = np.linspace(0.0, 60.0 * np.pi, 600), np.linspace(0.0, 0.2, 600)
     out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
     tool = -np.array([0.0, 0.0, 1.0]) - 0.5 * out

@@ -176,29 +176,34 @@ impl Climber<'_> {
         format!("joint '{name}' would have to go to {value}, beyond its limits [{lower}, {upper}]")
     }
 
-    /// Where a move has no configuration any more: the length along it, and why. `None` if it has some both at `at`, where its path was lost,
-    /// and at its end.
+    /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
+    /// and it is not proven that its end has none.
     fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
-        let (index, _) = place_on(path, at);
+        let (index, along) = place_on(path, at);
         let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
-        let mut why_none = |s: f64| -> Result<Option<Message>> {
+        let mut solutions = |s: f64| {
             let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
-            let found = solve_all(self.robot, &Target::Pose(path.pose(s)), &options, monitor)?;
-            Ok(found.solutions.is_empty().then(|| found.message()))
+            solve_all(self.robot, &Target::Pose(path.pose(s)), &options, monitor)
         };
-        if let Some(why) = why_none((at + BEYOND).min(path.length()))? {
-            return Ok(Some((place_on(path, at).1, why)));
+        let lost = solutions((at + BEYOND).min(path.length()))?;
+        if lost.obstruction.is_some() {
+            return Ok(Some((along, lost.message())));
         }
-        let Some(mut why) = why_none(end)? else { return Ok(None) };
-        let (mut has_some, mut has_none) = (at, end);
-        while has_none - has_some > BEYOND {
-            let middle = 0.5 * (has_some + has_none);
-            match why_none(middle)? {
-                Some(found) => (has_none, why) = (middle, found),
-                None => has_some = middle,
+        let mut beyond = solutions(end)?;
+        if beyond.obstruction.is_none() {
+            return Ok(lost.solutions.is_empty().then(|| (along, lost.message())));
+        }
+        let (mut near, mut far) = (at, end);
+        while far - near > BEYOND {
+            let middle = 0.5 * (near + far);
+            let found = solutions(middle)?;
+            if found.obstruction.is_some() {
+                (far, beyond) = (middle, found);
+            } else {
+                near = middle;
             }
         }
-        Ok(Some((place_on(path, has_none).1, why)))
+        Ok(Some((place_on(path, far).1, beyond.message())))
     }
 
     fn advice(&self, block: usize) -> &'static str {

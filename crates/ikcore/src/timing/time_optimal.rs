@@ -59,12 +59,13 @@ fn beyond_numbers(error: Error, path: &JointPath) -> Error {
         highest - lowest
     };
     let longest = (0..path.joints().len()).max_by(|one, other| way(*one).total_cmp(&way(*other))).unwrap_or(0);
-    let problem = format!(
-        "joint '{}' moves by {}, for which the limits leave a time beyond floating-point numbers: check the units of waypoints, knots and \
-         limits",
-        path.joints()[longest],
-        number(way(longest))
-    );
+    let (joint, way) = (&path.joints()[longest], way(longest));
+    let moves = if way.is_finite() {
+        format!("joint '{joint}' moves by {}, for which the limits leave a time", number(way))
+    } else {
+        format!("between its waypoints joint '{joint}' swings to positions")
+    };
+    let problem = format!("{moves} beyond floating-point numbers: check the units of waypoints, knots and limits");
     Error::InvalidPath { problem }
 }
 

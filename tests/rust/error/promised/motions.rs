@@ -17,6 +17,11 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         let limits = ConstantLimits::new(&rated(), "time_optimal").unwrap();
         time_optimal(&spline(&[0.0, 0.0, 1.0, 1e300], None).unwrap(), &limits, &TimingOptions::default())
     };
+    let swung = || {
+        let limits = ConstantLimits::new(&rated(), "time_optimal").unwrap();
+        let path = spline(&[0.0, 0.0, 1.0, 1.0, 3.0, 1.0], Some(&[0.0, 1e-300, 1.0])).unwrap();
+        time_optimal(&path, &limits, &TimingOptions::default())
+    };
     let within = |tolerance: &[f64], limits: Limits| {
         let path = JointPath::spline(names(2), &[0.0, 0.0, 1.0, 1.0], None, SplineEnds::Natural).unwrap();
         let limits = ConstantLimits::new(&limits, "time_optimal").unwrap();
@@ -72,6 +77,7 @@ pub fn paths_and_trajectories() -> Vec<Row> {
         "time_optimal" Infeasible: timed(rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap(), TimingOptions::default()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";
         "time_optimal" OutOfRange: timed(rated(), TimingOptions { gridpoints: Some(0), ..Default::default() }), "gridpoints must be from 3 to 200000, got 0";
         "time_optimal" InvalidPath: too_far(), "path: joint 'joint_2' moves by 1.000e300, for which the limits leave a time beyond floating-point numbers: check the units of waypoints, knots and limits";
+        "time_optimal" InvalidPath: swung(), "path: between its waypoints joint 'joint_2' swings to positions beyond floating-point numbers: check the units of waypoints, knots and limits";
         "time_optimal_within" WrongLength: within(&[0.1], rated()), "tolerance: expected 2 (one per joint), got 1";
         "time_optimal_within" OutOfRange: within(&[-0.1, 0.1], rated()), "tolerance of joint 'joint_1' must be zero or more and finite, got -0.1";
         "time_optimal_within" Infeasible: within(&[0.1; 2], rated().replace(Field::Upper, vec![Profile::Constant(0.5)]).unwrap()), "infeasible: the path takes joint 'joint_1' to 1, beyond its upper limit 0.5";

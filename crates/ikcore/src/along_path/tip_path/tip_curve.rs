@@ -402,14 +402,14 @@ mod tests {
             angle += step;
             angle
         }));
-        let (positions, rotations) = turned
+        let (positions, rotations): (Vec<_>, Vec<_>) = turned
             .enumerate()
             .map(|(row, angle)| {
                 let rotation = Rotation3::from_axis_angle(&Vector3::z_axis(), angle).into_inner();
-                ([0.1 * row as f64, 0.0, 0.0], Some(rotation))
+                ([0.1 * row as f64, 0.0, 0.0], rotation)
             })
             .unzip();
-        TipPath::through(&Waypoints::new(positions, rotations).unwrap()).unwrap()
+        TipPath::through(&Waypoints::new(positions, Some(rotations)).unwrap()).unwrap()
     }
 
     #[test]
