@@ -33,7 +33,7 @@ pub fn plan_along_path(
         .task
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
     if options.accuracy.is_none() && tip_path.turn_coarseness() > 0.0 {
-        tip_path = Cow::Owned(tip_path.into_owned().as_sampled());
+        tip_path = Cow::Owned(tip_path.into_owned().into_sampled());
     }
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let keeps = PathKeeps { robot, keeps: &options.keeps };

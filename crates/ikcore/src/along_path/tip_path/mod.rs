@@ -6,10 +6,12 @@
 //! | `path_target`, `tolerance_band` | what the tip has to meet at a point of it, and how far it may be off |
 //! | `sampling` | the curve of a timed path |
 //! | `corners` | where its direction jumps |
+//! | `coarseness` | how well its rows determine it |
 //! | `rounded` | the curve with rounded corners |
 //! | `segment_geometry` | angles and distances of single segments |
 //! | `repetition` | points that must differ |
 
+mod coarseness;
 mod corners;
 mod path_target;
 mod repetition;
