@@ -2,7 +2,8 @@
 //!
 //! Each objective has a second-order model. The step lowers the first model, then the second along the directions in which the
 //! first is flat, and so on (hierarchical least squares; Escande, Mansard and Wieber, "Hierarchical quadratic programming", 2014).
-//! A joint that reaches its bound on the way is fixed there, and the step goes on with the others.
+//! A joint that reaches its bound on the way is fixed there, and the step goes on with the others. Of several that are at bounds, the one
+//! that is pushed there most is fixed first: without it, the direction may lead the others back inside.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -31,11 +32,27 @@ pub fn write_level_step(models: &[&LevelModel], x: &[f64], ends: [&[f64]; 2], ou
         let moved = DVector::from_fn(x.len(), |j, _| out[j] - x[j]);
         let Some(direction) = direction(models, &moved, &free) else { return };
         let blocking = move_along(&direction, &free, ends, out);
-        if blocking.is_empty() {
-            return;
-        }
-        free.retain(|j| !blocking.contains(j));
+        let Some(fixed) = most_pushed(models, x, &direction, &blocking, out) else { return };
+        free.retain(|j| *j != fixed);
     }
+}
+
+/// The joint of `blocking` that the slopes of the models at `out` push most along `direction`; `None` without any.
+fn most_pushed(
+    models: &[&LevelModel],
+    x: &[f64],
+    direction: &DVector<f64>,
+    blocking: &[usize],
+    out: &[f64],
+) -> Option<usize> {
+    let [only] = blocking else {
+        let moved = DVector::from_fn(x.len(), |j, _| out[j] - x[j]);
+        let slope =
+            models.iter().fold(DVector::zeros(x.len()), |sum, model| sum + &model.gradient + &model.hessian * &moved);
+        let push = |j: &usize| -slope[*j] * direction[*j].signum();
+        return blocking.iter().copied().max_by(|a, b| push(a).total_cmp(&push(b)));
+    };
+    Some(*only)
 }
 
 /// Direction of the step after the motion `moved`, along the `free` joints; `None` where a model is not finite.
@@ -117,6 +134,17 @@ mod tests {
             (rows, residual)
                 .prop_map(move |(rows, residual)| (DMatrix::from_row_slice(m, n, &rows), DVector::from_vec(residual)))
         })
+    }
+
+    #[test]
+    fn in_a_corner_a_joint_that_leads_inside_is_not_fixed() {
+        // The direction of both leads outside, that of the second alone inside.
+        let gradient = DVector::from_row_slice(&[0.1, 0.05]);
+        let corner =
+            LevelModel { gradient, hessian: DMatrix::from_row_slice(2, 2, &[1.0, 0.9, 0.9, 1.0]), flat: 1e-12 };
+        let mut out = [0.0; 2];
+        write_level_step(&[&corner], &[0.0, 1.0], [&[0.0; 2], &[1.0; 2]], &mut out);
+        assert!(out[0] == 0.0 && (out[1] - 0.95).abs() < 1e-12, "{out:?}");
     }
 
     proptest! {
