@@ -36,8 +36,11 @@ impl Surroundings {
     pub fn clear_space<'a>(&self, robot: impl Into<SceneRobot<'a>>) -> Result<Option<ClearSpace<'a>>> {
         let (margin, robot) = (self.kept_margin()?, robot.into());
         if !self.apply_to(&robot) {
-            let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
-            return if self.margin.is_some() { Err(Error::Contradiction { problem }) } else { Ok(None) };
+            if self.margin.is_some() {
+                let problem = message![Setting::Margin, " needs ", Setting::Surroundings];
+                return Err(Error::Contradiction { problem });
+            }
+            return Ok(None);
         }
         let scene = Scene::new(robot, self.obstacles.clone().unwrap_or_default())?;
         let scene = if self.self_collision == Some(false) { scene.without_self_collision() } else { scene };
