@@ -10,6 +10,8 @@ from .. import arms
 from ..attack import Attack, BrokenError, Case
 from .solving import ROUNDING, TOLERANCE
 
+MOST = 1e8  # ratio of two weights: larger ones count as this
+
 PROGRAM = """solution = bik.solve(robot, target, start_q=start, joint_weights=weights)
 plain = bik.solve(robot, target, start_q=start)
 limits = bik.Limits(velocity=1.0)
@@ -64,6 +66,7 @@ class JointWeights(Attack):
             raise BrokenError("solved, but not within the tolerance", missed)
         if plain.success and not solution.success:
             raise BrokenError("with weights the target is missed", solution.message)
+        weights = np.minimum(weights / weights.min(), MOST)
         length, without = (np.linalg.norm(weights * (one.q - start)) for one in (solution, plain))
         if plain.success and plain.restarts == 0 and length > without * (1.0 + 1e-6) + 1e-6 * weights.max():
             raise BrokenError("the solution without weights is nearer by the weights", (length, without))
