@@ -154,6 +154,18 @@ def test_an_arm_that_swings_away_from_its_way_back_at_first_is_given_time_to_bra
     assert step.success, step.message
 
 
+def test_the_way_back_of_a_stretched_arm_is_found_without_its_closed_form() -> None:
+    """A pose on the rim of the reach, of which the sampled branches miss all."""
+    gen3, start = bik.Robot.named("gen3"), np.array([0.0, -1.12486470291, 0.0, 0.0, 1.5, 0.0, -1.5])
+    limits, way = bik.Limits(velocity=1.5, acceleration=5.0), np.array([0.97740838, -0.89190448, -1.49972639])
+    tracker, home = bik.Tracker(gen3, start, dt=0.02, limits=limits), gen3.fk(start)
+    for t in np.arange(0.0, 12.0, 0.02):
+        target = home.copy()
+        target[:3, 3] += way * np.interp(t, (0.0, 1.0, 1.5, 3.5), (0.0, 1.0, 1.0, 0.0))
+        step = tracker.step(target)
+    assert step.success, step.message
+
+
 def test_a_dead_end_is_told_with_the_joint_that_holds_the_arm() -> None:
     _, step = led_too_far_and_back(bik.Limits(velocity=1.5), recover=False)
     assert step.status == bik.Status.CAPPED

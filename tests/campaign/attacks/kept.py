@@ -126,7 +126,15 @@ class KeptMotions(Attack):
         return SAMPLES
 
     def judge_refusal(self, case: Case, error: Exception) -> None:
-        known = ("does not hold there", "infinite", "limit", "nothing would be kept", "region", "same configuration")
+        known = (
+            "does not hold there",
+            "infinite",
+            "allows its master",
+            "limit",
+            "nothing would be kept",
+            "region",
+            "same configuration",
+        )
         if not any(word in str(error) for word in known):
             raise BrokenError("a right input was refused", error)
 

@@ -123,7 +123,7 @@ def _require_value(expression: str, found: float, said: str) -> None:
         if not said:
             raise BrokenError("a value that Python refuses is taken", found)
         return
-    if said and abs(wanted) < 1e6:
+    if said and abs(wanted) < 1e6 and "so much work" not in said:  # int(1e300) has a thousand bits
         raise BrokenError("arithmetic is refused", said)
     if not said and not math.isclose(found, wanted, rel_tol=1e-12, abs_tol=1e-12):
         raise BrokenError("arithmetic has another value", (found, wanted))

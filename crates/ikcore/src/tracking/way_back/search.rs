@@ -1,8 +1,9 @@
 //! Search for configurations on the target of an arm, a bounded part in each tick.
 //!
 //! For a pose, the closed form of the arm gives the starts: all its branches or, for a redundant arm, those at values spread over
-//! its parameter. Otherwise they are drawn, at increasing distances from the arm. Starts that do not meet the target are moved
-//! onto it by short descents. The work of a tick is bounded by evaluations, so that the search takes more ticks, not longer ones.
+//! its parameter. Otherwise, or if none of these meets the target, they are drawn, at increasing distances from the arm. Starts
+//! that do not meet the target are moved onto it by short descents. The work of a tick is bounded by evaluations, so that the
+//! search takes more ticks, not longer ones.
 
 use smallvec::SmallVec;
 
@@ -54,6 +55,8 @@ pub(super) struct GoalSearch {
     tried: usize,
     /// Solutions found so far.
     solutions: usize,
+    /// Whether starts are drawn although there is a closed form: on the rim of the reach its sampled branches may all miss.
+    draws: bool,
     /// Evaluations of the forward kinematics, and those before this tick.
     pub evaluations: usize,
     begun: usize,
@@ -69,7 +72,7 @@ impl GoalSearch {
     /// Begins anew.
     pub fn restart(&mut self) {
         self.found.clear();
-        (self.tried, self.solutions) = (0, 0);
+        (self.tried, self.solutions, self.draws) = (0, 0, false);
     }
 
     /// Searches for one tick. Returns whether the search has ended.
@@ -77,7 +80,7 @@ impl GoalSearch {
         self.begun = self.evaluations;
         let bounds = movable(context);
         let pose = match context.aims.only(context.robot) {
-            Some((target @ Target::Pose(pose), criterion)) if criterion.fixes_pose(target) => Some(pose),
+            Some((target @ Target::Pose(pose), criterion)) if !self.draws && criterion.fixes_pose(target) => Some(pose),
             _ => None,
         };
         let ranges = finite(context, &bounds);
@@ -85,6 +88,10 @@ impl GoalSearch {
         let take = |q: Point| self.take_branch(q, context, &bounds, means);
         let ended = pose.and_then(|pose| next_branches(context.robot, pose, &ranges, &mut tried, take));
         match ended {
+            Some(true) if self.found.is_empty() => {
+                (self.tried, self.draws) = (0, true);
+                false
+            }
             Some(ended) => {
                 self.tried = tried;
                 ended
