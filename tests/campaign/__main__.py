@@ -14,7 +14,9 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
+import tempfile
 from pathlib import Path
 
 from . import ledger, soak, watch, worker
@@ -64,7 +66,13 @@ def _run(given: argparse.Namespace) -> None:
 
 
 def _repeat(given: argparse.Namespace) -> None:
-    print(worker.repeated(ATTACKS[given.name], given.seed, given.index))
+    here, sys.path[:] = Path.cwd(), [str(Path(place).absolute()) for place in sys.path]
+    with tempfile.TemporaryDirectory(prefix="beetle-ik-campaign-") as folder:
+        os.chdir(folder)  # programs may write files
+        try:
+            print(worker.repeated(ATTACKS[given.name], given.seed, given.index))
+        finally:
+            os.chdir(here)
 
 
 def _worker(given: argparse.Namespace) -> None:
