@@ -22,6 +22,14 @@ struct Source {
     next: usize,
 }
 
+impl Source {
+    fn of_stream(seed: u64, stream: u64) -> Box<Self> {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream);
+        Box::new(Self { generator, uniforms: [0.0; BUFFER], next: BUFFER })
+    }
+}
+
 /// Returns the generator of item `index` of a job with this `seed`; items are independent of each other.
 pub fn stream(seed: u64, index: u64) -> LazyRng {
     LazyRng { seed, stream: index, source: None }
@@ -41,6 +49,12 @@ pub fn split(uniform: f64) -> [f64; 2] {
 }
 
 impl LazyRng {
+    /// The same generator, whose first draw allocates nothing.
+    pub fn prepared(mut self) -> Self {
+        self.source.get_or_insert_with(|| Source::of_stream(self.seed, self.stream));
+        self
+    }
+
     /// Draws uniformly from [0, 1).
     #[inline]
     pub fn uniform(&mut self) -> f64 {
@@ -55,11 +69,7 @@ impl LazyRng {
 
     #[cold]
     fn refill(&mut self) -> f64 {
-        let source = self.source.get_or_insert_with(|| {
-            let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
-            generator.set_stream(self.stream);
-            Box::new(Source { generator, uniforms: [0.0; BUFFER], next: BUFFER })
-        });
+        let source = self.source.get_or_insert_with(|| Source::of_stream(self.seed, self.stream));
         let mut bytes = [0; 8 * BUFFER];
         source.generator.fill_bytes(&mut bytes);
         for (uniform, bytes) in source.uniforms.iter_mut().zip(bytes.as_chunks().0) {

@@ -102,7 +102,7 @@ impl Session {
             arm.set_braking_part(1.0); // prepares the limits of milder stops
         }
         let running = options.rule.start(arm.limited.is_some(), !arm.has_one_tip());
-        let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0));
+        let (rule, seed, rng) = (options.rule.clone(), options.seed, rng::stream(options.seed, 0).prepared());
         let way_back = (rule.is_own() && arm.tasks.region().is_none()).then(|| {
             arm.robot.solves_at_once(); // prepares the closed form
             Box::new(WayBack::new(&arm.limits, options.recover))
@@ -710,7 +710,7 @@ impl Session {
         if let Some(safety) = &mut self.safety {
             safety.forget();
         }
-        self.rng = rng::stream(self.seed, 0);
+        self.rng = rng::stream(self.seed, 0).prepared();
         Ok(())
     }
 }
