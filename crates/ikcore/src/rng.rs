@@ -50,7 +50,7 @@ pub fn split(uniform: f64) -> [f64; 2] {
 
 impl LazyRng {
     /// The same generator, whose first draw allocates nothing.
-    pub fn prepared(mut self) -> Self {
+    pub(crate) fn prepared(mut self) -> Self {
         self.source.get_or_insert_with(|| Source::of_stream(self.seed, self.stream));
         self
     }
