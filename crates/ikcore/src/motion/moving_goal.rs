@@ -4,8 +4,8 @@
 //! weight, so that a goal with constant acceleration is followed without lag. [`GoalMemory`] chooses how many samples count; without noise
 //! three, and the goal is exactly the last sample. After a jump the fit starts anew, with a line.
 //!
-//! Between samples the goal moves on along the fit. If the next sample is late, it keeps its velocity for a while and then brakes to rest;
-//! the fit itself does not change until a sample comes.
+//! Between samples the goal moves on along the fit. If the next sample is late, it keeps its velocity, as far as that is no noise, for a
+//! while and then brakes to rest; the fit itself does not change until a sample comes.
 
 use super::goal_fit::{Degree, Gains, GoalFit};
 use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
@@ -191,6 +191,7 @@ impl MovingGoal {
     /// Writes the configuration before the samples that the goal remembers: at the last one without noise. It is never before the samples
     /// themselves, where a parabola would turn back.
     pub fn remembered_from(&self, scales: &Scales, out: &mut Point) {
+        // The samples of a line count alike: the first is twice as old as their mean.
         let factor = if self.degree() == Degree::Line { 2.0 } else { 1.0 };
         self.expected(self.last_sample - factor * self.fit.mean_age(), scales, out);
     }
