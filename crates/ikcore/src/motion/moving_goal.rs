@@ -4,8 +4,8 @@
 //! weight, so that a goal with constant acceleration is followed without lag. [`GoalMemory`] chooses how many samples count; without noise
 //! three, and the goal is exactly the last sample. After a jump the fit starts anew, with a line.
 //!
-//! Between samples the goal moves on along the fit. If the next sample is late, it keeps its velocity, as far as that is no noise, for a
-//! while and then brakes to rest; the fit itself does not change until a sample comes.
+//! Between samples the goal moves on along the fit. If the next sample is late, it keeps its velocity for a while, at first as far as
+//! that is no noise, and then brakes to rest; the fit itself does not change until a sample comes.
 
 use super::goal_fit::{Degree, Gains, GoalFit};
 use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
@@ -35,7 +35,7 @@ const MOVES_ON: f64 = 2.0;
 /// Longest time without a sample for which the goal keeps its velocity (ticks), for joints that are slow to reach full speed.
 const LONGEST: f64 = 300.0;
 
-/// Standard deviations of noise at which half of a velocity is trusted without samples.
+/// Standard deviations of suspected noise at which half of a velocity is trusted without samples.
 const DOUBTED: f64 = 3.0;
 
 /// A sample of the goal.
@@ -175,7 +175,8 @@ impl MovingGoal {
         if t < stop { [q + t * (velocity + 0.5 * t * change), change] } else { [q + 0.5 * stop * velocity, 0.0] }
     }
 
-    /// The velocity of joint `j` without a sample: the less of it, the more of it may be noise, as a Wiener filter weighs it.
+    /// The velocity of joint `j` without a sample. As long as the noise is unknown: the less of it, the more of it may be noise, as a
+    /// Wiener filter weighs it.
     fn trusted(&self, j: usize, velocity: f64, scales: &Scales) -> f64 {
         let noise = DOUBTED * self.velocity_uncertainty * self.noise.suspected_of(j) * scales.change[j];
         if noise > 0.0 { velocity * (1.0 + (noise / velocity).powi(2)).recip() } else { velocity }

@@ -65,10 +65,10 @@ impl NoiseLevel {
         self.fractions.get(j).map_or(0.0, |fraction| self.level * (self.fractions.len() as f64 * fraction).sqrt())
     }
 
-    /// Standard deviation of what may be noise of entry `j`: as long as the noise is unknown, the mean of the differences so far.
+    /// Standard deviation of what may be noise of entry `j` as long as that is unknown: the mean of the differences so far; 0 afterwards.
     pub fn suspected_of(&self, j: usize) -> f64 {
         if self.is_known() || self.count <= CUBIC {
-            return self.level_of(j);
+            return 0.0;
         }
         let seen = [PARABOLA, CUBIC].map(|first| (self.count - first).min(WINDOW) as f64);
         let mean = |kind: usize| self.differences[kind].iter().sum::<f64>() / seen[kind];
