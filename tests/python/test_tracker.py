@@ -143,25 +143,33 @@ def test_an_arm_led_too_far_and_back_returns(more: dict[str, float]) -> None:
         moves = np.diff(moves, axis=0)
 
 
-def test_an_arm_that_swings_away_from_its_way_back_at_first_is_given_time_to_brake() -> None:
-    start = np.array([0.98233371, -0.99357679, -1.92091128, -2.14844872, -1.63379597, 0.48444543, 0.45319806])
-    limits, way = bik.Limits(velocity=1.5, acceleration=5.0), np.array([-0.292288112, 0.835362214, 0.465550891])
-    tracker, home = bik.Tracker(PANDA, start, dt=0.01, limits=limits), PANDA.fk(start)
+@pytest.mark.parametrize(
+    ("name", "start", "way", "times"),
+    [
+        # It swings away from its way back at first, and is given time to brake.
+        (
+            "panda",
+            [0.98233371, -0.99357679, -1.92091128, -2.14844872, -1.63379597, 0.48444543, 0.45319806],
+            [-0.292288112, 0.835362214, 0.465550891],
+            (0.0, 4.0, 6.0, 8.0),
+        ),
+        # The pose is on the rim of the reach, where the sampled branches of the closed form miss it.
+        (
+            "gen3",
+            [0.0, -1.12486470291, 0.0, 0.0, 1.5, 0.0, -1.5],
+            [0.97740838, -0.89190448, -1.49972639],
+            (0.0, 1.0, 1.5, 3.5),
+        ),
+    ],
+)
+def test_a_way_back_is_found_and_taken(
+    name: str, start: list[float], way: list[float], times: tuple[float, ...]
+) -> None:
+    robot, limits = bik.Robot.named(name), bik.Limits(velocity=1.5, acceleration=5.0)
+    tracker, home = bik.Tracker(robot, start, dt=0.01, limits=limits), robot.fk(np.array(start))
     for t in np.arange(0.0, 14.0, 0.01):
         target = home.copy()
-        target[:3, 3] += way * np.interp(t, (0.0, 4.0, 6.0, 8.0), (0.0, 1.0, 1.0, 0.0))
-        step = tracker.step(target)
-    assert step.success, step.message
-
-
-def test_the_way_back_of_a_stretched_arm_is_found_without_its_closed_form() -> None:
-    """A pose on the rim of the reach, of which the sampled branches miss all."""
-    gen3, start = bik.Robot.named("gen3"), np.array([0.0, -1.12486470291, 0.0, 0.0, 1.5, 0.0, -1.5])
-    limits, way = bik.Limits(velocity=1.5, acceleration=5.0), np.array([0.97740838, -0.89190448, -1.49972639])
-    tracker, home = bik.Tracker(gen3, start, dt=0.02, limits=limits), gen3.fk(start)
-    for t in np.arange(0.0, 12.0, 0.02):
-        target = home.copy()
-        target[:3, 3] += way * np.interp(t, (0.0, 1.0, 1.5, 3.5), (0.0, 1.0, 1.0, 0.0))
+        target[:3, 3] += np.array(way) * np.interp(t, times, (0.0, 1.0, 1.0, 0.0))
         step = tracker.step(target)
     assert step.success, step.message
 
