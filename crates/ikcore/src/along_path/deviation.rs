@@ -134,8 +134,8 @@ impl<C: Configurations> TipDeviation<'_, C> {
         distance.max(angle)
     }
 
-    /// Whether `is_too_much` of the configuration and what [`at`](Self::at) is there, at one of `samples` parameters between two others. It
-    /// begins in the middle, where a spline is farthest from its path.
+    /// Whether `is_too_much` holds for the configuration and its deviation at one of `samples` parameters between two others. The middle
+    /// comes first, where a spline is farthest from its path.
     pub(crate) fn any_between(
         &self,
         [from, to]: [f64; 2],
@@ -161,7 +161,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
         self.parts_of(fraction, q, ends)
     }
 
-    /// What counts of a distance and an angle: that beyond the turn which the path leaves open.
+    /// Deviation that counts: the distance, and the angle beyond the turn that the path leaves open.
     fn beyond(&self, [distance, angle]: [f64; 2]) -> [f64; 2] {
         [distance, (angle - self.tip_path.open_turn()).max(0.0)]
     }

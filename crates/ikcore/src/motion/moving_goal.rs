@@ -175,8 +175,8 @@ impl MovingGoal {
         if t < stop { [q + t * (velocity + 0.5 * t * change), change] } else { [q + 0.5 * stop * velocity, 0.0] }
     }
 
-    /// The velocity of joint `j` without a sample. As long as the noise is unknown: the less of it, the more of it may be noise, as a
-    /// Wiener filter weighs it.
+    /// Velocity with which joint `j` moves on where no sample comes. While the noise is unknown, it is reduced by the weight of a Wiener
+    /// filter, v^2 / (v^2 + noise^2).
     fn trusted(&self, j: usize, velocity: f64, scales: &Scales) -> f64 {
         let noise = DOUBTED * self.velocity_uncertainty * self.noise.suspected_of(j) * scales.change[j];
         if noise > 0.0 { velocity * (1.0 + (noise / velocity).powi(2)).recip() } else { velocity }

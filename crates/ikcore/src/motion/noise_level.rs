@@ -65,7 +65,7 @@ impl NoiseLevel {
         self.fractions.get(j).map_or(0.0, |fraction| self.level * (self.fractions.len() as f64 * fraction).sqrt())
     }
 
-    /// Standard deviation of what may be noise of entry `j` as long as that is unknown: the mean of the differences so far; 0 afterwards.
+    /// Standard deviation that the noise of entry `j` may have while it is unknown: the mean of the differences so far. 0 once it is known.
     pub fn suspected_of(&self, j: usize) -> f64 {
         if self.is_known() || self.count <= CUBIC {
             return 0.0;
