@@ -1,18 +1,24 @@
 //! Control loop: an arm, the rule that proposes its commands, and the safety filter that decides on them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `tick_command` | the command of a tick, and its status |
+//! | `session_changes` | changes between ticks |
+//! | `session_reads` | what can be read between ticks |
+
+mod session_changes;
+mod session_reads;
+mod tick_command;
 
 use std::sync::Arc;
 
-use super::around_arm::ObstacleVelocities;
 use super::away::Way;
 use super::idle::Idle;
 use super::kept::Kept;
-use super::limited_state::LimitedState;
-use super::record::Accepted;
-use super::rule::{RunningRule, Tick, TickResult, TickRule};
-use super::safety_filter::{FilterOutcome, FilterWork, Holder, SafetyFilter};
+use super::rule::{RunningRule, TickResult, TickRule};
+use super::safety_filter::SafetyFilter;
 use super::settling::Settling;
 use super::step::Step;
-use super::step_context::StepContext;
 use super::target_stream::Arrival;
 use super::tip_pace::TipPace;
 use super::torque_pace::{OtherLimits, TorquePace};
@@ -22,19 +28,14 @@ use super::way_back::{EndOfTick, Next, OpenLines, WayBack};
 use crate::constraint::{Keep, refuse_broken};
 use crate::error::{Error, Result, require_positive};
 use crate::kinematics::ReachShortfall;
-use crate::limits::{JointOutside, Limits};
-use crate::math::vector::write_within;
 use crate::message::{Message, Setting};
-use crate::objective::{Bounds, Point, Score};
-use crate::obstacle::{ClearSpace, Obstacles, Surroundings};
+use crate::objective::Bounds;
+use crate::obstacle::Surroundings;
 use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Aims, Assessment, Goals, Target, TipError};
-
-/// Bisections of a tick that would leave the region; they find the admissible fraction to one thousandth.
-const BISECTIONS: usize = 10;
+use crate::task::{Assessment, Goals, Target};
 
 /// Tracking session of one arm.
 #[derive(Debug)]
@@ -126,63 +127,6 @@ impl Session {
         })
     }
 
-    /// Accepted configuration (n,).
-    pub fn q(&self) -> &[f64] {
-        &self.arm.q
-    }
-
-    /// Velocity of the last tick (n,) (rad/s, m/s); zero before the first.
-    pub fn qd(&self) -> Point {
-        self.arm.q.iter().zip(&self.arm.before).map(|(q, before)| (q - before) / self.arm.dt).collect()
-    }
-
-    /// Time of the accepted configuration (s).
-    pub fn time(&self) -> f64 {
-        self.arm.time()
-    }
-
-    /// Limits in force.
-    pub fn limits(&self) -> &Limits {
-        &self.arm.limits
-    }
-
-    /// Names the joints that cannot move because of limits of zero, with the remedy; `None` without such limits.
-    pub fn lock(&self) -> Option<&Arc<Message>> {
-        self.arm.lock.as_ref()
-    }
-
-    /// Joints that began outside their position limits; empty once all are inside.
-    pub fn start_outside(&self) -> &[JointOutside] {
-        self.arm.outside.as_ref().map_or(&[], |outside| &outside.joints)
-    }
-
-    /// Time step (s).
-    pub fn dt(&self) -> f64 {
-        self.arm.dt
-    }
-
-    /// Velocity limits of the last tick (n,) (rad/s, m/s).
-    pub fn velocity_limit(&self) -> &[f64] {
-        &self.arm.tick_box.velocity
-    }
-
-    /// Errors of each target of several tips; empty before targets arrive, and for one tip.
-    pub fn tip_errors(&self) -> Vec<TipError> {
-        if self.arm.has_one_tip() { vec![] } else { self.arm.aims().errors(&self.arm.robot, &self.arm.q).to_vec() }
-    }
-
-    /// Which levels of the targets are met, and which are not, by tip; `None` for targets without an order.
-    pub fn levels_in_words(&self) -> Option<String> {
-        Some(self.arm.levels()?.in_words(&self.arm.robot, &self.arm.q))
-    }
-
-    /// Positions (m) of the tips that have targets, in the order of the targets; for pairs, in the frame of the first tip.
-    pub(super) fn tip_positions(&self) -> Vec<[f64; 3]> {
-        let mut positions = vec![];
-        self.arm.aims().positions(&self.arm.robot, &self.arm.q, |position| positions.push(position));
-        positions
-    }
-
     /// Distance by which the targets of `arrival` are provably out of reach within `bounds`.
     ///
     /// # Errors
@@ -191,23 +135,6 @@ impl Session {
         self.read(&mut arrival)?;
         let TrackedArm { robot, tasks, .. } = &self.arm;
         Ok(Problem::new(robot, tasks.with(&arrival.targets)).reach_shortfall(bounds))
-    }
-
-    /// Configuration and box of the last tick.
-    pub(super) fn accepted(&self) -> Accepted<'_> {
-        let clearance = self.space().map(|space| space.clearance(&self.arm.q));
-        let nearest = clearance.as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        Accepted {
-            q: &self.arm.q,
-            tick_box: &self.arm.tick_box,
-            measured: nearest.and_then(|nearest| nearest.contact.measured()),
-            clearance: clearance.map_or(f64::NAN, |clearance| clearance.distance),
-        }
-    }
-
-    /// The tracked robot.
-    pub fn robot(&self) -> &Robot {
-        &self.arm.robot
     }
 
     /// Evaluates the start without moving; its error to the targets is the value that the first tick must beat.
@@ -395,56 +322,6 @@ impl Session {
         }
     }
 
-    fn run_rule(&mut self, sampled_ago: Option<f64>, monitor: &mut dyn Monitor) -> TickResult {
-        let (context, targets) = (self.arm.context(), &self.arm.targets);
-        let Some((task, target)) = context.aims.iter().next() else { return TickResult::at(context.q) };
-        let (criterion, goals, rng) = (&task.criterion, &mut self.goals, &mut self.rng);
-        let most_evaluations = self.way_back.as_ref().map_or(usize::MAX, |way_back| way_back.left_to_rule());
-        let tick = Tick { context, target, criterion, goals, targets, most_evaluations, sampled_ago, rng, monitor };
-        self.running.advance(tick, self.safety.as_deref_mut())
-    }
-
-    /// Moves by one tick of the stop that was certified with the last command.
-    fn brake(&mut self) -> TickResult {
-        let mut found = TickResult::at(&self.arm.q);
-        let held =
-            self.safety.as_mut().filter(|_| self.stopping.is_some()).and_then(|safety| safety.stop_on(self.arm.dt));
-        let fastest = || self.arm.limited.as_ref().map(|limited| limited.stopping(&self.arm.q));
-        if let Some(next) = held.or_else(fastest) {
-            found.q = next;
-        }
-        self.arm.tick_box.bounds.clip(&mut found.q);
-        self.arm.assess(&mut found);
-        found
-    }
-
-    fn status(&self, found: &TickResult, held: Option<Holder>) -> Status {
-        let Score { value, solved } = found.assessment.score;
-        match self.arm.last_value {
-            _ if !self.is_clear(&found.q) => Status::InCollision,
-            _ if self.torques.as_ref().is_some_and(|torques| !torques.is_certified()) => Status::HeldByTorque,
-            _ if solved && self.arm.is_blocked_by_region() => Status::HeldInRegion,
-            _ if solved => Status::Solved,
-            _ if let Some(holder) = held.or(self.holds_goal()) => match holder {
-                Holder::Body => Status::HeldByObstacle,
-                Holder::Constraint => Status::HeldByConstraint,
-            },
-            Some(last) if self.torques.as_ref().is_some_and(|torques| torques.holds(last, value, self.arm.dt)) => {
-                Status::HeldByTorque
-            }
-            _ if let Some(status) = self.arm.given_up(found) => status,
-            Some(last) if value >= last => Status::Capped,
-            // Other rules may take steps as short as these.
-            _ if self.way_back.is_some() && self.arm.rests_at(&found.q) => Status::Capped,
-            _ => Status::Improved,
-        }
-    }
-
-    /// What keeps the goal from its target; nothing while the arm stops.
-    fn holds_goal(&self) -> Option<Holder> {
-        self.safety.as_ref().filter(|_| self.stopping.is_none()).and_then(|safety| safety.holds_goal())
-    }
-
     /// Whether the arm stays at rest because it comes no nearer to its targets.
     fn is_settled(&mut self) -> bool {
         let moves = self.stopping.is_some() || self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
@@ -471,162 +348,6 @@ impl Session {
             _ => self.way_back.as_ref().is_some_and(|way_back| way_back.away().is_some()),
         };
         settling.end_tick(&found.assessment, is_held, self.arm.rests_at(&found.q), self.arm.dt);
-    }
-
-    /// Changes the command `found` by the rule to one that keeps the arm clear and all constraints, and holds pairs of tips or, for a
-    /// `settled` arm, to the braking one. Returns what caused the change, if it was not the pairs.
-    fn filter(&mut self, settled: bool, found: &mut TickResult) -> Option<Holder> {
-        let Some(safety) = &mut self.safety else {
-            if settled {
-                found.q = self.arm.context().braking();
-                self.note_changed(found);
-            }
-            return None;
-        };
-        let context = self.arm.context();
-        // On a way back the distance from the target shows no progress: the targets do not judge the commands.
-        let is_returning = self.way_back.as_ref().is_some_and(|way_back| way_back.is_returning());
-        let context = if is_returning { StepContext { aims: Aims::default(), ..context } } else { context };
-        let FilterOutcome { changed, held_by } = safety.filter(&context, settled, &mut found.q);
-        if changed {
-            self.note_changed(found);
-        }
-        held_by
-    }
-
-    /// Changes the command `found` to one that keeps the limits of tips.
-    fn keep_pace(&mut self, found: &mut TickResult) {
-        let Some(pace) = self.pace.as_mut().filter(|_| !found.interrupted && self.stopping.is_none()) else { return };
-        if pace.keep(&self.arm.context(), self.safety.as_deref_mut(), &mut found.q) {
-            self.note_changed(found);
-        }
-    }
-
-    /// Changes the command `found` to one that keeps the torque limits. An arm that stops goes on with its stop, unless masses have changed.
-    fn keep_torques(&mut self, settled: bool, found: &mut TickResult) {
-        let Some(torques) = &mut self.torques else { return };
-        if found.interrupted || self.stopping.is_some() && torques.goes_on_with_stop(&self.arm, &found.q) {
-            return;
-        }
-        let others = OtherLimits { safety: self.safety.as_deref_mut(), pace: self.pace.as_deref_mut() };
-        if torques.keep(&mut self.arm, others, settled, &mut found.q) {
-            self.note_changed(found);
-        }
-    }
-
-    /// Assesses a command that is not the one of the rule.
-    fn note_changed(&mut self, found: &mut TickResult) {
-        self.arm.assess(found);
-        if self.arm.limited.is_none() {
-            self.running.forget();
-        }
-    }
-
-    /// Whether all bodies keep the margin at `q`; true if collisions are not checked.
-    fn is_clear(&self, q: &[f64]) -> bool {
-        self.space().is_none_or(|space| space.holds(q))
-    }
-
-    /// Clear space of the arm, if collisions are avoided.
-    pub fn space(&self) -> Option<&Arc<ClearSpace<'static>>> {
-        self.safety.as_ref().and_then(|safety| safety.space())
-    }
-
-    /// Work of the safety filter since it began, with the first obstacles or pairs of tips; zero without either.
-    pub fn filter_work(&self) -> FilterWork {
-        self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
-    }
-
-    /// What is kept at every instant.
-    pub fn keeps(&self) -> &[Keep] {
-        self.safety.as_ref().and_then(|safety| safety.kept()).map_or(&[], Kept::keeps)
-    }
-
-    /// The constraint nearest to its tolerance, in words; `None` if nothing is kept.
-    pub fn tightest(&self) -> Option<String> {
-        self.safety.as_ref()?.kept()?.tightest_at(&self.arm.q)
-    }
-
-    /// Whether torques are limited.
-    pub(super) fn limits_torque(&self) -> bool {
-        self.torques.is_some()
-    }
-
-    /// The torque limit that holds the arm back, in words; `None` if none does.
-    pub fn held_by_torque(&self) -> Option<String> {
-        self.torques.as_ref()?.held_in_words(&self.arm.given)
-    }
-
-    /// Exchanges the masses: `robot` is the one of the session with other masses, payloads or gravity. The next command and its stop are checked
-    /// with the new ones.
-    ///
-    /// # Errors
-    /// [`Error::Contradiction`] for a robot that differs in anything else, [`Error::NoDynamics`] for one without masses where torques are
-    /// limited; the session is then as before.
-    pub fn set_robot(&mut self, robot: &Robot) -> Result<()> {
-        if *robot == self.arm.given {
-            return Ok(());
-        }
-        robot.require_masses_alone_differ(&self.arm.given)?;
-        if let Some(torques) = &mut self.torques {
-            torques.carry(robot, &self.arm.limits)?;
-        }
-        self.arm.robot = Arc::new(self.arm.robot.with_masses_of(robot));
-        self.arm.given = robot.clone();
-        self.settling.iter_mut().for_each(Settling::restart);
-        Ok(())
-    }
-
-    /// Velocities of the obstacles (m/s); empty if all are at rest.
-    pub fn obstacle_velocities(&self) -> &[[f64; 3]] {
-        self.safety.as_ref().map_or(&[], |safety| safety.velocities())
-    }
-
-    /// Obstacles, margin and choice of self-collision.
-    pub fn surroundings(&self) -> &Surroundings {
-        &self.surroundings
-    }
-
-    /// Replaces the obstacles by these, at their current poses, with their `velocities` (m/s); an empty list means all at rest,
-    /// `None` no obstacles. The margin and the choice of self-collision stay.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); the session is then as before.
-    pub fn set_obstacles(&mut self, obstacles: Option<Obstacles>, velocities: Vec<[f64; 3]>) -> Result<()> {
-        let rest = velocities.is_empty() && self.obstacle_velocities().is_empty();
-        if rest && obstacles == self.surroundings.obstacles {
-            return Ok(()); // A loop that gives the same in every tick frees no arm.
-        }
-        let motion = ObstacleVelocities::new(velocities, obstacles.as_ref().map_or(0, |all| all.len()))?;
-        let surroundings = Surroundings { obstacles, ..self.surroundings.clone() };
-        // A margin given before is kept for obstacles that may come later.
-        let space =
-            if surroundings.apply_to(&self.arm.robot) { surroundings.clear_space(&self.arm.robot)? } else { None };
-        if space.is_some() || !self.arm.has_one_tip() || !self.keeps().is_empty() {
-            let safety = match self.safety.take() {
-                Some(safety) => self.safety.insert(safety),
-                None => self.safety.insert(Box::new(SafetyFilter::new(None, None, &self.arm.limits)?)),
-            };
-            safety.replace(space, motion, &self.arm.limits)?;
-        } else {
-            self.safety = None;
-        }
-        self.surroundings = surroundings;
-        if let Some(way_back) = &mut self.way_back {
-            way_back.note_replaced();
-        }
-        self.settling.iter_mut().for_each(Settling::restart);
-        Ok(())
-    }
-
-    /// Stops as fast as the limits allow, from the next tick on until a target arrives. Held pairs of tips stay held; the arm
-    /// does not evade approaching obstacles, neither while braking nor afterwards. Returns the duration of the stop (s): 0 for
-    /// an arm without acceleration limits.
-    pub fn stop(&mut self) -> f64 {
-        self.begin_stopping(Idle::Stopped);
-        let held = self.safety.as_ref().and_then(|safety| safety.ticks_to_stop());
-        let fastest = || self.arm.limited.as_ref().map_or(0.0, LimitedState::time_to_stop);
-        held.map_or_else(fastest, |ticks| self.arm.dt * ticks)
     }
 
     /// Moves by one tick to `q`, which the caller guarantees to be inside the limits, bypassing the rule. The rule restarts
@@ -661,57 +382,9 @@ impl Session {
         })
     }
 
-    /// Shortens a tick that would take the tip out of its region. The tick starts inside the region and the box is
-    /// convex, so any fraction of the tick ends in the box.
-    fn keep_in_region(&mut self, found: &mut TickResult) {
-        let region = self.arm.tasks.region().filter(|region| !region.contains(&found.position));
-        let Some(region) = region.filter(|_| !self.arm.targets.last().is_empty()) else { return };
-        let (mut kept, mut past) = (0.0, 1.0);
-        let end = found.q.clone();
-        for _ in 0..BISECTIONS {
-            let fraction = 0.5 * (kept + past);
-            write_within(&self.arm.q, &end, fraction, &mut found.q);
-            let inside = region.contains(&self.arm.robot.tip_position(&found.q));
-            (kept, past) = if inside { (fraction, past) } else { (kept, fraction) };
-        }
-        write_within(&self.arm.q, &end, kept, &mut found.q);
-        found.assess(&self.arm.robot, &self.arm.aims());
-        found.evaluations += BISECTIONS + 1;
-        self.running.forget();
-    }
-
     /// Restarts the rule.
     fn start_rule(&mut self) {
         self.running = self.rule.start(self.arm.limited.is_some(), !self.arm.has_one_tip());
-    }
-
-    /// Resets the session to `q` (n,) at t = 0, with velocities `qd` (n,) (rad/s, m/s) and accelerations `qdd` (n,) (rad/s^2,
-    /// m/s^2); `None` means zero. Both are differences of commands in the last tick.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new) for a start; [`Error::Contradiction`](crate::Error::Contradiction) for an arm that could not
-    /// stop inside its limits.
-    pub fn reset(&mut self, q: &[f64], qd: Option<&[f64]>, qdd: Option<&[f64]>) -> Result<()> {
-        if let Some(kept) = self.safety.as_ref().and_then(|safety| safety.kept()) {
-            refuse_broken("q", kept.keeps(), kept.robot(), q)?;
-        }
-        if let Some(torques) = self.torques.as_mut().filter(|_| q.len() == self.arm.q.len()) {
-            torques.require_held("q", q, &self.arm.given)?;
-        }
-        self.arm.reset(q, [qd, qdd])?;
-        self.arm.set_braking_part(1.0);
-        self.torques.iter_mut().for_each(|torques| torques.restart());
-        self.stopping = None;
-        if let Some(way_back) = &mut self.way_back {
-            way_back.restart();
-        }
-        self.settling.iter_mut().for_each(Settling::restart);
-        self.start_rule();
-        if let Some(safety) = &mut self.safety {
-            safety.forget();
-        }
-        self.rng = rng::stream(self.seed, 0).prepared();
-        Ok(())
     }
 }
 
