@@ -31,9 +31,11 @@ for tick in range(round((out + pause + back + time) / dt)):
     if np.abs(step.qd).max() < 1e-6:
         said.append(step.message)
 end = (out + pause + back + time) + 60.0
-while step.message.startswith("on the way") and tick * dt < end:  # a motion of the joints may take longer
+settled = 0
+while settled * dt < 1.0 and tick * dt < end:  # a motion of the joints may take longer, and from its end the arm follows
     tick += 1
     step = tracker.step(target(tick * dt))
+    settled = 0 if step.message.startswith("on the way") else settled + 1
     q.append(step.q)
 q, away = np.array(q), np.linalg.norm(robot.fk(step.q)[:3, 3] - home[:3, 3])
 """

@@ -14,7 +14,7 @@ STARTS = {
     "ur5e": [0.3, -1.2, 1.6, -1.9, -1.5, 0.4],
 }
 KNOWN = 2.0  # s: until then the tracker learns how noisy the stream is
-ALLOWED = 2.0  # times the deviation without losses plus the way in the longest gap; 1.1 in 197 of 200 cases
+ALLOWED = 3.0  # times the deviation without losses plus the way in the longest gap; 1.1 in 1,980 of 2,000 cases, 2.0 in all
 
 # `run` returns the largest distance of the tip from the path, and of the path from where it was in the last packet.
 FOLLOWED = """
@@ -40,7 +40,8 @@ def run(kept):
         if t > known:
             clean = pose(t)[:3, 3]
             worst = max(worst, np.linalg.norm(robot.fk(q)[:3, 3] - clean))
-            longest = max(longest, np.linalg.norm(pose(last)[:3, 3] - clean))
+        if t > 0.5:  # what a gap before has left may last
+            longest = max(longest, np.linalg.norm(pose(last)[:3, 3] - pose(t)[:3, 3]))
     return worst, longest
 
 lossless, lossy = run([True]), run(kept)

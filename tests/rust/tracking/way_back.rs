@@ -182,6 +182,23 @@ fn noise_does_not_send_an_arm_from_one_configuration_to_another() {
     }
 }
 
+#[test]
+fn noise_of_a_stretched_arm_needs_no_way_back() {
+    let iiwa = robot("iiwa14");
+    let start = [1.5, 0.0, -1.5, 0.0, 1.5, -1.0, -1.5];
+    let [_, accelerations, jerks] = all_limits(&iiwa);
+    for (limits, seed) in [(&accelerations, 0), (&accelerations, 1), (&jerks, 0), (&jerks, 1)] {
+        let mut draws = rng::stream(seed, 0);
+        let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };
+        let mut session = session(&iiwa, &start, &options);
+        for tick in 0..1000 {
+            let shift = std::array::from_fn(|_| 0.003 * draws.uniform_in(-1.0, 1.0));
+            let step = session.step(&moved(&iiwa, &start, shift), &mut Unattended).unwrap();
+            assert!(step.away.is_none_or(|away| away.way != Way::Taken), "seed {seed}, tick {tick}");
+        }
+    }
+}
+
 /// Dead end of the panda: led along this way, it stays far from the target.
 fn dead_end(limits: &Limits, panda: &Robot) -> Option<(Vec<f64>, [f64; 3])> {
     WAYS.into_iter().find_map(|way| {
@@ -266,6 +283,29 @@ fn an_arm_on_its_way_back_stops_at_once_and_follows_new_targets() {
     let near = moved(&panda, &here, [0.02, 0.01, -0.01]);
     let (end, over) = (0..200).map(|_| step(&mut session, Some(&near))).last().unwrap();
     assert!(end.status == Status::Solved && over < 1e-6, "{over}");
+}
+
+#[test]
+fn a_target_that_moves_while_the_arm_is_on_its_way_is_met() {
+    let panda = robot("panda");
+    let limits = &all_limits(&panda)[1];
+    let (stuck, _) = dead_end(limits, &panda).expect("a dead end");
+    let options = TrackOptions { limits: Some(limits.clone()), ..TrackOptions::default() };
+    for way in (0..6).map(|k| std::array::from_fn(|axis| if axis == k / 2 { 0.2 - 0.4 * (k % 2) as f64 } else { 0.0 }))
+    {
+        let mut session = session(&panda, &stuck, &options);
+        let (mut ticks_taken, mut end) = (0, None);
+        for _ in 0..1000 {
+            let share = (ticks_taken as f64 - 20.0).clamp(0.0, 25.0) / 25.0;
+            let target = moved(&panda, &START, way.map(|x: f64| x * share));
+            let step = session.step(&target, &mut Unattended).unwrap();
+            let way = step.away.map(|away| away.way);
+            assert_ne!(way, Some(Way::Blocked), "{}", step.message());
+            ticks_taken += usize::from(ticks_taken > 0 || way == Some(Way::Taken));
+            end = Some(step);
+        }
+        assert_eq!(end.as_ref().unwrap().status, Status::Solved, "{way:?}: {}", end.unwrap().message());
+    }
 }
 
 #[test]

@@ -12,14 +12,17 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `goal_progress` | progress on the way back |
 //! | `rest_watch` | detects that the error has ceased to fall |
 //! | `search` | looks for configurations on the target |
 //! | `tried` | remembers what a search has ended with |
 
+mod goal_progress;
 mod rest_watch;
 mod search;
 mod tried;
 
+use goal_progress::GoalProgress;
 use rest_watch::RestWatch;
 use search::{DESCENT, GoalSearch, Means, descended, movable};
 use tried::{Tried, is_still};
@@ -47,6 +50,11 @@ const SLOPE: f64 = 1e-4;
 /// Fraction of the error of the resting arm that the goal may have.
 const BETTER: f64 = 0.8;
 
+/// Fraction of the error below which a descent from a moving arm ends if its rule gets to the target, and further descents in the
+/// ticks after one that does not.
+const NEARER: f64 = 0.5;
+const DOUBTS: usize = 5;
+
 /// Distance of a joint (rad, m) up to which the rule gets to the target by itself, as it averages noise.
 const WITHIN_NOISE: f64 = 0.05;
 
@@ -56,10 +64,8 @@ const LEFT_TO_RULE: usize = 20;
 /// Distance of all joints from the goal (rad, m) at which the arm has arrived.
 const ARRIVED: f64 = 0.02;
 
-/// Time without progress towards the goal after which an arm gives up (s), and the relative decrease of the distance that is
-/// progress.
+/// Time without progress towards the goal after which an arm gives up (s).
 const PATIENCE: f64 = 1.0;
-const PROGRESS: f64 = 0.02;
 
 /// Sections of a line, of which a tick certifies one.
 const SECTIONS: usize = 8;
@@ -97,7 +103,9 @@ pub(super) enum Next {
 enum State {
     Following,
     /// Descends, to see whether the rule gets to the target by itself.
-    Doubting,
+    Doubting {
+        descents: usize,
+    },
     Looking,
     /// Certifies the line to a candidate, section by section.
     Choosing {
@@ -125,10 +133,7 @@ pub(super) struct WayBack {
     /// Error at which the arm was last found at rest.
     error_at_rest: f64,
     tried: Option<Tried>,
-    /// Smallest distance from the goal, and the time since then (s).
-    nearest: (f64, f64),
-    /// Whether the arm still swings away from the goal, as it does until the motion that it came with is braked.
-    swings_out: bool,
+    progress: GoalProgress,
     patience: f64,
     linearization: Box<Linearization>,
     /// Evaluations of the last tick.
@@ -147,8 +152,7 @@ impl WayBack {
             away: None,
             error_at_rest: 0.0,
             tried: None,
-            nearest: (f64::INFINITY, 0.0),
-            swings_out: false,
+            progress: GoalProgress::towards(&[]),
             patience: PATIENCE * factor,
             linearization: Box::default(),
             evaluations: 0,
@@ -211,7 +215,7 @@ impl WayBack {
             State::Returning => return self.check_return(&end),
             State::Following => self.doubt(error, &end),
             _ if !is_still(error, self.error_at_rest) => self.follow(),
-            State::Doubting => self.begin_to_look(&mut end),
+            State::Doubting { descents } => self.begin_to_look(descents, &mut end),
             State::Looking => self.look(&mut end),
             State::Choosing { candidate, section } => return self.choose((candidate, section), &mut end, lines),
         }
@@ -246,23 +250,31 @@ impl WayBack {
             self.name_joints(&context);
             return;
         }
-        self.state = State::Doubting;
+        self.state = State::Doubting { descents: 0 };
     }
 
-    /// Begins to look for configurations on the target, if the arm rests or a descent does not lead there.
-    fn begin_to_look(&mut self, end: &mut EndOfTick<'_>) {
+    /// Begins to look for configurations on the target, if the arm rests or no descent leads there.
+    fn begin_to_look(&mut self, descents: usize, end: &mut EndOfTick<'_>) {
         let context = end.context;
         let bounds = movable(&context);
         let mut means = Means { rng: end.rng, monitor: end.monitor };
-        let (near, solved, evaluations) = descended(context.q, DESCENT, &context, &bounds, &mut means);
-        self.evaluations = evaluations;
-        if solved && (!is_resting(end) || largest_difference(&near, context.q) < WITHIN_NOISE) {
+        let near = descended(context.q, DESCENT, &context, &bounds, &mut means);
+        self.evaluations = near.evaluations;
+        let rests = is_resting(end);
+        if near.error < NEARER * self.error_at_rest && !rests
+            || near.solved && largest_difference(&near.q, context.q) < WITHIN_NOISE
+        {
             self.follow();
             return;
         }
+        // Noise puts the target of a stretched arm out of reach in every other tick.
+        if !rests && descents < DOUBTS {
+            self.state = State::Doubting { descents: descents + 1 };
+            return;
+        }
         self.search.restart();
-        if solved {
-            self.search.offer(near, &context, &bounds);
+        if near.solved {
+            self.search.offer(near.q, &context, &bounds);
         }
         self.state = State::Looking;
         self.away.get_or_insert(Away { way: Way::Unknown, held: [0; 2] });
@@ -335,9 +347,9 @@ impl WayBack {
         let bounds = movable(&context);
         let mut means = Means { rng: end.rng, monitor: end.monitor };
         let from = &self.search.found[candidate].q;
-        let (to, solved, evaluations) = descended(from, DESCENT, &context, &bounds, &mut means);
-        self.evaluations = evaluations;
-        if !solved {
+        let to = descended(from, DESCENT, &context, &bounds, &mut means);
+        self.evaluations = to.evaluations;
+        if !to.solved {
             // The targets have moved away since.
             self.follow();
             return Next::Continue;
@@ -347,8 +359,8 @@ impl WayBack {
             return Next::Continue;
         }
         self.away = self.away.map(|away| Away { way: Way::Taken, ..away });
-        (self.state, self.nearest, self.swings_out) = (State::Returning, (0.0, 0.0), true);
-        Next::HeadFor(to)
+        (self.state, self.progress) = (State::Returning, GoalProgress::towards(&to.q));
+        Next::HeadFor(to.q)
     }
 
     /// Ends the way back where the arm has arrived, comes no nearer to the goal, or the goal no longer meets the target.
@@ -364,31 +376,19 @@ impl WayBack {
             self.tried = None;
             return Next::Arrived;
         }
-        self.note_progress(distance, context.dt);
+        self.progress.note(goal, distance, context.dt);
         self.evaluations = 1;
         let error = context.aims.assess(context.robot, goal).score.value.sqrt();
         if error > BETTER * self.error_at_rest {
             self.follow();
             return Next::Follow;
         }
-        if self.nearest.1 > self.patience {
+        if self.progress.waited > self.patience {
             self.watch.restart();
             self.stay(Way::Blocked, end, true);
             return Next::Follow;
         }
         Next::Continue
-    }
-
-    /// Notes how far the arm is from its goal after a tick.
-    fn note_progress(&mut self, distance: f64, dt: f64) {
-        let (nearest, waited) = self.nearest;
-        let is_nearer = distance < (1.0 - PROGRESS) * nearest;
-        self.swings_out &= !is_nearer;
-        self.nearest = match (is_nearer, self.swings_out) {
-            (true, _) => (distance, 0.0),
-            (false, true) => (distance.max(nearest), waited + dt),
-            (false, false) => (nearest, waited + dt),
-        };
     }
 }
 

@@ -10,8 +10,8 @@ const MET: f64 = 1e-3;
 const PATIENCE: f64 = 0.3;
 const PROGRESS: f64 = 0.1;
 
-/// Smallest error, in changes of a tick, that noise does not explain.
-const ABOVE_NOISE: f64 = 1.5;
+/// Smallest error, in changes of a tick, that noise does not explain. The length of an error changes less than its direction.
+const ABOVE_NOISE: f64 = 3.0;
 
 /// Watches an error, tick by tick.
 #[derive(Debug, Clone, Copy)]

@@ -142,10 +142,10 @@ impl GoalSearch {
         bounds: &Bounds,
         means: &mut Means<'_>,
     ) {
-        let (end, solved, evaluations) = descended(start, most, context, bounds, means);
-        self.evaluations += evaluations;
-        if solved {
-            self.offer(end, context, bounds);
+        let end = descended(start, most, context, bounds, means);
+        self.evaluations += end.evaluations;
+        if end.solved {
+            self.offer(end.q, context, bounds);
         }
     }
 
@@ -185,14 +185,23 @@ impl GoalChoice {
     }
 }
 
-/// Descends from `start` to the targets. Returns the end, whether it meets them, and the evaluations.
+/// End of a descent to the targets.
+pub(super) struct Descended {
+    pub q: Point,
+    /// Root of the squared error; zero where the end meets the targets.
+    pub error: f64,
+    pub solved: bool,
+    pub evaluations: usize,
+}
+
+/// Descends from `start` to the targets.
 pub(super) fn descended(
     start: &[f64],
     most: usize,
     context: &StepContext<'_>,
     bounds: &Bounds,
     means: &mut Means<'_>,
-) -> (Point, bool, usize) {
+) -> Descended {
     let mut problem = Problem::new(context.robot, context.aims);
     let objective: &mut dyn Differentiable = &mut problem;
     let stop = Stop { max_evaluations: most, ..Stop::default() };
@@ -200,7 +209,9 @@ pub(super) fn descended(
     let mut from = Point::from_slice(start);
     bounds.clip(&mut from);
     run(&LevenbergMarquardt::default(), &mut evaluator, &from);
-    (Point::from_slice(&evaluator.best().x), evaluator.best().solved, evaluator.evaluations())
+    let best = evaluator.best();
+    let error = if best.solved { 0.0 } else { best.value.sqrt() };
+    Descended { q: Point::from_slice(&best.x), error, solved: best.solved, evaluations: evaluator.evaluations() }
 }
 
 /// Position limits; a joint that may not move has its position alone.

@@ -35,10 +35,12 @@ impl Tried {
         self.replaced = true;
     }
 
-    /// Ends a wait of an arm that rests with this error to `targets`. Returns whether the outcome still holds.
+    /// Ends a wait of an arm that rests with this error to `targets`. Returns whether the outcome still holds. It does not for an arm
+    /// that has come much nearer since. As its error then is at most half, such attempts end.
     pub fn holds(&mut self, targets: &[Target], error: f64) -> bool {
         self.waits = self.waits.saturating_sub(1);
-        let is_same = self.targets[..] == *targets || self.failed && is_still(error, self.error);
+        let is_same =
+            self.targets[..] == *targets && error > NEW * self.error || self.failed && is_still(error, self.error);
         is_same && !(self.replaced && self.waits == 0)
     }
 }
