@@ -19,8 +19,8 @@ const PLACES: [[f64; 2]; 3] = [[0.0, 1.0 / 6.0], [0.5, 4.0 / 6.0], [1.0, 1.0 / 6
 pub(super) struct Constraints {
     pub points: Vec<RatePoint>,
     /// By point, then by joint.
-    rows: Vec<JointRow>,
-    joints: usize,
+    pub(super) rows: Vec<JointRow>,
+    pub(super) joints: usize,
     /// By point, then by tip with an acceleration limit.
     tip_rows: Vec<TipRow>,
     tips: usize,
@@ -28,11 +28,10 @@ pub(super) struct Constraints {
     torque_rows: Vec<TorqueRow>,
 }
 
-/// One point of the clock, and the limits there.
+/// One point of the clock, and the limits of tips and torques there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointRows<'a> {
     pub point: &'a RatePoint,
-    pub joints: &'a [JointRow],
     pub tips: &'a [TipRow],
     pub torques: &'a [TorqueRow],
 }
@@ -110,33 +109,38 @@ impl Constraints {
         Self { points, rows, joints: limits.dof(), tip_rows, tips, torque_rows }
     }
 
-    /// The largest change of the jerk of a joint in an interval, and at its end to the next, as parts of its limit.
-    pub(super) fn jerk_changes(&self, rate: &RateSpline, interval: usize) -> [f64; 2] {
-        let first = interval * PLACES.len();
-        let last = first + PLACES.len() - 1;
-        let largest = |points: [usize; 2]| {
-            let change = |joint: usize| {
-                let [one, other] = points.map(|point| self.jerk(rate, point, joint));
-                (other - one).abs()
-            };
-            (0..self.joints).map(change).fold(0.0, f64::max)
+    /// The largest change of the jerk of a joint in each interval, and at its end to the next, as parts of its limit.
+    pub(super) fn jerk_changes(&self, rate: &RateSpline) -> Vec<[f64; 2]> {
+        let jerks = self.jerks(rate);
+        let of_point = |point: usize| &jerks[point * self.joints..(point + 1) * self.joints];
+        let largest = |[one, other]: [usize; 2]| {
+            of_point(one).iter().zip(of_point(other)).map(|(one, other)| (other - one).abs()).fold(0.0, f64::max)
         };
-        let inside = (first..last).map(|point| largest([point, point + 1])).fold(largest([first, last]), f64::max);
-        [inside, if last + 1 < self.points.len() { largest([last, last + 1]) } else { 0.0 }]
+        let of_interval = |interval: usize| {
+            let first = interval * PLACES.len();
+            let last = first + PLACES.len() - 1;
+            let inside = (first..last).map(|point| largest([point, point + 1])).fold(largest([first, last]), f64::max);
+            [inside, if last + 1 < self.points.len() { largest([last, last + 1]) } else { 0.0 }]
+        };
+        (0..rate.intervals()).map(of_interval).collect()
     }
 
-    /// The jerk of a joint at a point, as a part of its limit.
-    fn jerk(&self, rate: &RateSpline, point: usize, joint: usize) -> f64 {
-        let y = rate.at(point / PLACES.len(), PLACES[point % PLACES.len()][0]);
-        y[0].sqrt() * self.rows[point * self.joints + joint].used(&y)[1]
+    /// The jerks of all joints, by point, as parts of their limits.
+    fn jerks(&self, rate: &RateSpline) -> Vec<f64> {
+        let of_point = |(point, rows): (usize, &'_ [JointRow])| {
+            let y = rate.at(point / PLACES.len(), PLACES[point % PLACES.len()][0]);
+            rows.iter().map(|row| y[0].sqrt() * row.used(&y)[1]).collect::<Vec<f64>>()
+        };
+        self.rows.chunks_exact(self.joints).enumerate().flat_map(of_point).collect()
     }
 
-    /// Each point with its rows.
-    pub(super) fn all(&self) -> impl Iterator<Item = PointRows<'_>> {
+    /// Each point with the limits of tips and torques; none without such limits.
+    pub(super) fn of_whole(&self) -> impl Iterator<Item = PointRows<'_>> {
         let torques = if self.torque_rows.is_empty() { 0 } else { self.joints };
-        self.points.iter().enumerate().zip(self.rows.chunks_exact(self.joints)).map(move |((i, point), joints)| {
+        let points = if self.tips + torques > 0 { &self.points[..] } else { &[] };
+        points.iter().enumerate().map(move |(i, point)| {
             let tips = &self.tip_rows[i * self.tips..(i + 1) * self.tips];
-            PointRows { point, joints, tips, torques: &self.torque_rows[i * torques..(i + 1) * torques] }
+            PointRows { point, tips, torques: &self.torque_rows[i * torques..(i + 1) * torques] }
         })
     }
 
@@ -147,13 +151,12 @@ impl Constraints {
 
     /// Measures the clock so that y = 1 everywhere reaches a limit and violates none. Returns that y in the old measure.
     pub(super) fn normalize(&mut self) -> f64 {
-        let of_row = |row: &JointRow| row.acceleration[0].abs().max(row.jerk[0].abs().powf(2.0 / 3.0));
-        let of_point = |PointRows { point, joints, tips, torques }: PointRows<'_>| {
-            let of_tips = tips.iter().map(|tip| norm(&tip.of_y)).fold(point.slowness, f64::max);
-            let of_torques = torques.iter().map(TorqueRow::slowness).fold(of_tips, f64::max);
-            joints.iter().map(of_row).fold(of_torques, f64::max)
-        };
-        let y = 1.0 / self.all().map(of_point).fold(0.0, f64::max);
+        let of_accelerations = self.rows.iter().map(|row| row.acceleration[0].abs());
+        let of_jerk = self.rows.iter().map(|row| row.jerk[0].abs()).fold(0.0, f64::max).powf(2.0 / 3.0);
+        let of_speeds = self.points.iter().map(|point| point.slowness);
+        let of_tips = self.tip_rows.iter().map(|tip| norm(&tip.of_y));
+        let of_torques = self.torque_rows.iter().map(TorqueRow::slowness);
+        let y = 1.0 / of_accelerations.chain(of_speeds).chain(of_tips).chain(of_torques).fold(of_jerk, f64::max);
         self.restore(1.0 / y);
         y
     }

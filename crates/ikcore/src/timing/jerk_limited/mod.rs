@@ -12,11 +12,13 @@
 //! | `rate_spline` | quadratic splines on any knots |
 //! | `constraints` | the limits at points of the clock, as rows for y and its derivatives |
 //! | `barrier` | the fastest rate within the limits, by Newton's method with a barrier |
+//! | `four_points` | its value and derivatives, at four points at a time |
 //! | `straight_line` | the fastest motion along a straight line, in closed form |
 
 mod barrier;
 mod clock;
 mod constraints;
+mod four_points;
 mod rate_spline;
 mod readings;
 mod straight_line;
@@ -119,8 +121,7 @@ fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, roun
 fn parts(rate: &RateSpline, constraints: &Constraints, shortest: f64) -> Vec<usize> {
     let mut parts = vec![1; rate.intervals()];
     let times = rate.durations();
-    for interval in 0..rate.intervals() {
-        let changes = constraints.jerk_changes(rate, interval);
+    for (interval, changes) in constraints.jerk_changes(rate).into_iter().enumerate() {
         let beside = [Some(interval), (interval + 1 < rate.intervals()).then_some(interval + 1)];
         let halved = if changes[1] > CHANGE {
             &beside[..]
