@@ -120,7 +120,7 @@ pub fn rows(pose: &Pose) -> [f64; 16] {
 /// [`Error::NotFinite`] for NaN or infinity; [`Error::NotRigid`] if the last row is not (0, 0, 0, 1), or the rotation is not
 /// orthonormal to 2e-3 or is a reflection. A matrix of three decimals is taken, as the nearest rotation.
 pub fn from_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<Pose> {
-    check_matrix(what, matrix).map(|()| from_checked(matrix))
+    check_to(what, matrix, ORTHOGONALITY_TOLERANCE).map(|deviation| nearest(matrix, deviation))
 }
 
 /// Drift of a rotation: largest entry of R'R less the identity, where it is more than that of rounded numbers.
@@ -143,10 +143,9 @@ impl fmt::Display for Drift {
 /// # Errors
 /// [`Error::NotFinite`] and [`Error::NotRigid`], as [`from_matrix`].
 pub fn from_drifted(what: &str, matrix: &Matrix4<f64>) -> Result<(Pose, Option<Drift>)> {
-    check_to(what, matrix, DRIFT_TOLERANCE)?;
-    let deviation = deviation(matrix);
+    let deviation = check_to(what, matrix, DRIFT_TOLERANCE)?;
     let drift = (deviation > ORTHOGONALITY_TOLERANCE).then_some(Drift(deviation));
-    Ok((from_checked(matrix), drift))
+    Ok((nearest(matrix, deviation), drift))
 }
 
 /// Checks that a matrix is a pose; `what` names the matrix in errors.
@@ -154,11 +153,11 @@ pub fn from_drifted(what: &str, matrix: &Matrix4<f64>) -> Result<(Pose, Option<D
 /// # Errors
 /// As [`from_matrix`].
 pub fn check_matrix(what: &str, matrix: &Matrix4<f64>) -> Result<()> {
-    check_to(what, matrix, ORTHOGONALITY_TOLERANCE)
+    check_to(what, matrix, ORTHOGONALITY_TOLERANCE).map(|_| ())
 }
 
-/// Checks that a matrix is a pose whose R'R differs from the identity by at most `tolerance`.
-fn check_to(what: &str, matrix: &Matrix4<f64>, tolerance: f64) -> Result<()> {
+/// Checks that a matrix is a pose whose R'R differs from the identity by at most `tolerance`. Returns the difference.
+fn check_to(what: &str, matrix: &Matrix4<f64>, tolerance: f64) -> Result<f64> {
     require_finite(what, matrix.as_slice(), |i| format!("entry ({}, {})", i % 4, i / 4))?;
     let not_rigid = |problem: String| Error::NotRigid { what: what.into(), problem };
     if let Some(problem) = fault_of_last_row(matrix) {
@@ -173,7 +172,7 @@ fn check_to(what: &str, matrix: &Matrix4<f64>, tolerance: f64) -> Result<()> {
         let remedy = "turn one of its axes round";
         return Err(not_rigid(format!("its rotation is a reflection (determinant -1): {remedy}")));
     }
-    Ok(())
+    Ok(deviation)
 }
 
 /// Returns the largest entry of R'R less the identity.
@@ -199,19 +198,20 @@ fn fault_of_last_row(matrix: &Matrix4<f64>) -> Option<String> {
 /// Returns the pose of a matrix accepted by [`check_matrix`], orthonormalised.
 #[inline]
 pub fn from_checked(matrix: &Matrix4<f64>) -> Pose {
-    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
-    let translation = matrix.fixed_view::<3, 1>(0, 3).into_owned();
-    from_parts(translation.into(), orthonormalized(rotation))
+    nearest(matrix, deviation(matrix))
 }
 
-/// Returns the nearest rotation to a matrix that is one up to rounding; an exact rotation is unchanged.
+/// Returns the pose with the nearest rotation to that of a matrix, whose R'R differs from the identity by `deviation`. An exact rotation is
+/// unchanged.
 #[inline]
-fn orthonormalized(r: Matrix3<f64>) -> Matrix3<f64> {
-    let r = if (r.transpose() * r - Matrix3::identity()).amax() > GRAM_SCHMIDT { polar(r) } else { r };
+fn nearest(matrix: &Matrix4<f64>, deviation: f64) -> Pose {
+    let rotation = matrix.fixed_view::<3, 3>(0, 0).into_owned();
+    let translation = matrix.fixed_view::<3, 1>(0, 3).into_owned();
+    let r = if deviation > GRAM_SCHMIDT { polar(rotation) } else { rotation };
     let x = r.column(0).normalize();
     let y = r.column(1) - x * x.dot(&r.column(1));
     let y = y.normalize();
-    Matrix3::from_columns(&[x, y, x.cross(&y)])
+    from_parts(translation.into(), Matrix3::from_columns(&[x, y, x.cross(&y)]))
 }
 
 /// Returns the orthogonal factor of the polar decomposition, the nearest rotation, by Newton's iteration (Higham 1986).

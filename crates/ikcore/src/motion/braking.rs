@@ -115,8 +115,10 @@ impl Braking {
 
     /// The fastest stop after a tick with this step and change.
     pub fn stop(&self, step: f64, change: f64) -> FastestStop {
-        if step == 0.0 && change.abs() <= self.jerk {
-            return FastestStop { ticks: 0.0, end: 0.0, lowest: 0.0, highest: 0.0 };
+        if step.abs() + change.abs() <= self.jerk.min(self.acceleration) {
+            // The next tick undoes such a step.
+            let ticks = if step == 0.0 { 0.0 } else { 1.0 };
+            return FastestStop { ticks, end: 0.0, lowest: 0.0, highest: 0.0 };
         }
         let sign = self.direction(step, change);
         let mut phases = StopPhases::begin(sign * step);

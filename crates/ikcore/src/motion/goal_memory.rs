@@ -100,9 +100,10 @@ impl Circumstances {
         if seen == 0.0 {
             return 1.0;
         }
-        let for_acceleration = (seen / (SHAKE * allowed)).powf(0.4);
-        let for_jerk = (seen / (JERK_SHAKE * allowed * jerk_fraction * interval)).powf(2.0 / 7.0);
-        for_acceleration.max(for_jerk).max(1.0)
+        let power = |ratio: f64, exponent: f64| if ratio > 1.0 { ratio.powf(exponent) } else { 1.0 };
+        let for_acceleration = power(seen / (SHAKE * allowed), 0.4);
+        let for_jerk = power(seen / (JERK_SHAKE * allowed * jerk_fraction * interval), 2.0 / 7.0);
+        for_acceleration.max(for_jerk)
     }
 }
 

@@ -71,8 +71,6 @@ pub(crate) struct MovingGoal {
     noise: NoiseLevel,
     /// Uncertainty of the goal in standard deviations of a sample.
     uncertainty: f64,
-    /// Uncertainty of its velocity where the next sample is overdue, in standard deviations of a sample (1/tick).
-    velocity_uncertainty: f64,
     /// Fraction of a surprise by which the last sample corrected the position.
     corrected: f64,
 }
@@ -95,7 +93,6 @@ impl MovingGoal {
             memory: GoalMemory::new(q.len()),
             noise: NoiseLevel::new(),
             uncertainty: 1.0,
-            velocity_uncertainty: 0.0,
             corrected: 1.0,
         };
         // A step is the velocity at the middle of its tick.
@@ -141,10 +138,21 @@ impl MovingGoal {
         self.corrected * self.noise()
     }
 
-    /// Moves on by one tick.
-    pub fn advance(&mut self, scales: &Scales) {
+    /// Begins a tick.
+    pub fn begin_tick(&mut self) {
         self.now += 1.0;
-        self.move_to_now(scales);
+    }
+
+    /// Corrects the motion by a sample, if one has arrived in the tick, and moves on to its end.
+    pub fn end_tick(&mut self, sample: Option<GoalSample<'_>>, scales: &Scales) {
+        if let Some(sample) = sample.filter(|sample| sample.time > self.last_sample) {
+            self.take(sample, scales);
+        }
+        for j in 0..self.q.len() {
+            let [q, change] = self.at(j, self.now, scales);
+            self.step[j] = q - self.at(j, self.now - 1.0, scales)[0];
+            (self.q[j], self.change[j]) = (q, change);
+        }
     }
 
     /// Writes the expected configuration at `time` (in ticks).
@@ -155,13 +163,27 @@ impl MovingGoal {
 
     /// Position and acceleration of joint `j` at `time`: on the fit until the next sample is overdue, then on with the velocity, in the end
     /// braking.
+    #[inline]
     fn at(&self, j: usize, time: f64, scales: &Scales) -> [f64; 2] {
-        let [q, velocity, acceleration] = [0, 1, 2].map(|k| self.fitted[k][j]);
+        let [q, velocity, acceleration] = &self.fitted;
+        let motion @ [q, velocity, acceleration] = [q[j], velocity[j], acceleration[j]];
         let t = time - self.last_sample;
         let on_fit = self.arrived - self.last_sample + self.interval + 1.0;
         if t <= on_fit {
             return [q + t * (velocity + 0.5 * t * acceleration), acceleration];
         }
+        self.overdue_at(j, motion, [t, on_fit], scales)
+    }
+
+    /// Position and acceleration of joint `j` with this motion at the last sample, `t` ticks later, more than `on_fit`.
+    #[cold]
+    fn overdue_at(
+        &self,
+        j: usize,
+        [q, velocity, acceleration]: [f64; 3],
+        [t, on_fit]: [f64; 2],
+        scales: &Scales,
+    ) -> [f64; 2] {
         let q = q + on_fit * (velocity + 0.5 * on_fit * acceleration);
         let velocity = self.trusted(j, velocity + on_fit * acceleration, scales);
         let (t, even) = (t - on_fit, self.time_to_move_on(scales) - self.interval);
@@ -178,7 +200,12 @@ impl MovingGoal {
     /// Velocity with which joint `j` moves on where no sample comes. While the noise is unknown, it is reduced by the weight of a Wiener
     /// filter, v^2 / (v^2 + noise^2).
     fn trusted(&self, j: usize, velocity: f64, scales: &Scales) -> f64 {
-        let noise = DOUBTED * self.velocity_uncertainty * self.noise.suspected_of(j) * scales.change[j];
+        let suspected = self.noise.suspected_of(j);
+        if suspected == 0.0 {
+            return velocity;
+        }
+        let overdue = self.arrived - self.last_sample + self.interval;
+        let noise = DOUBTED * self.fit.deviation_of_velocity(overdue, self.degree()) * suspected * scales.change[j];
         if noise > 0.0 { velocity * (1.0 + (noise / velocity).powi(2)).recip() } else { velocity }
     }
 
@@ -197,26 +224,11 @@ impl MovingGoal {
         self.expected(self.last_sample - factor * self.fit.mean_age(), scales, out);
     }
 
-    fn move_to_now(&mut self, scales: &Scales) {
-        for j in 0..self.q.len() {
-            let [q, change] = self.at(j, self.now, scales);
-            self.step[j] = q - self.at(j, self.now - 1.0, scales)[0];
-            (self.q[j], self.change[j]) = (q, change);
-        }
-    }
-
     fn degree(&self) -> Degree {
         if self.samples.is_some() { Degree::Line } else { Degree::Parabola }
     }
 
     /// Corrects the motion by a sample.
-    pub fn correct(&mut self, sample: GoalSample<'_>, scales: &Scales) {
-        if sample.time > self.last_sample {
-            self.take(sample, scales);
-            self.move_to_now(scales);
-        }
-    }
-
     fn take(&mut self, sample: GoalSample<'_>, scales: &Scales) {
         let GoalSample { q, time } = sample;
         let gap = time - self.last_sample;
@@ -234,7 +246,10 @@ impl MovingGoal {
         self.samples = self.samples.map(|samples| samples + 1).filter(|n| *n < PARABOLA || (*n as f64) < memory);
         let discount = match self.degree() {
             Degree::Line => 1.0,
-            Degree::Parabola => (1.0 - 1.0 / memory).max(LEAST_WEIGHT).powf(gap / self.interval),
+            Degree::Parabola => {
+                let (discount, intervals) = ((1.0 - 1.0 / memory).max(LEAST_WEIGHT), gap / self.interval);
+                if intervals == 1.0 { discount } else { discount.powf(intervals) }
+            }
         };
         self.fit.add(gap, discount);
         self.fit.expect(self.noise(), scales);
@@ -257,7 +272,6 @@ impl MovingGoal {
         let gains = self.fit.gains(self.degree());
         self.apply(gains, sample);
         self.uncertainty = self.fit.deviation(self.now - time, self.degree());
-        self.velocity_uncertainty = self.fit.deviation_of_velocity(self.now - time + self.interval, self.degree());
         self.corrected = gains.position;
     }
 
@@ -325,6 +339,13 @@ mod tests {
         (0..12).map(|_| draws.uniform_in(-0.5, 0.5)).sum()
     }
 
+    /// Moves `goal` on by a tick, in which this sample may arrive.
+    fn tick(goal: &mut MovingGoal, sample: Option<f64>, scales: &Scales) {
+        goal.begin_tick();
+        let time = goal.now;
+        goal.end_tick(sample.as_ref().map(|q| GoalSample { q: std::slice::from_ref(q), time }), scales);
+    }
+
     /// The largest error of the goal in the second half of `ticks`, when every `every`-th tick has a sample of `age`.
     fn error(path: impl Fn(f64) -> f64, noise: f64, ticks: usize, [every, age]: [usize; 2]) -> f64 {
         let (scales, mut draws) = (scales(), rng::stream(1, 0));
@@ -333,14 +354,15 @@ mod tests {
         for tick in 1..=ticks {
             let now = tick as f64;
             if let Some(goal) = &mut goal {
-                goal.advance(&scales);
+                goal.begin_tick();
             }
-            if tick % every == 0 {
-                let time = now - age as f64;
-                let sample = GoalSample { q: &[path(time) + noise * normal(&mut draws)], time };
-                let goal = goal.get_or_insert_with(|| MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), now, time));
-
-                goal.correct(sample, &scales);
+            let time = now - age as f64;
+            let value = (tick % every == 0).then(|| path(time) + noise * normal(&mut draws));
+            if value.is_some() {
+                goal.get_or_insert_with(|| MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), now, time));
+            }
+            if let Some(goal) = &mut goal {
+                goal.end_tick(value.as_ref().map(|q| GoalSample { q: std::slice::from_ref(q), time }), &scales);
             }
             if let Some(goal) = goal.as_ref().filter(|_| tick > ticks / 2) {
                 worst = worst.max((goal.q()[0] - path(now)).abs());
@@ -372,15 +394,13 @@ mod tests {
         let (scales, mut draws) = (scales(), rng::stream(2, 0));
         let mut goal = MovingGoal::of_arm(&[path(0.0)], &JointState::at_rest(1), 0.0, 1.0);
         let (mut worst, mut longest, mut last) = (0.0_f64, 0.0_f64, 0.0);
-        for tick in 1..=3000 {
-            let now = tick as f64;
-            goal.advance(&scales);
+        for i in 1..=3000 {
+            let now = i as f64;
             let value = path(now) + noise * normal(&mut draws);
-            if tick % 3 == 0 && (tick < 300 || kept(tick / 3)) {
-                goal.correct(GoalSample { q: &[value], time: now }, &scales);
-                last = now;
-            }
-            if tick > 300 {
+            let comes = i % 3 == 0 && (i < 300 || kept(i / 3));
+            tick(&mut goal, comes.then_some(value), &scales);
+            last = if comes { now } else { last };
+            if i > 300 {
                 worst = worst.max((goal.q()[0] - path(now)).abs());
                 longest = longest.max((path(last) - path(now)).abs());
             }
@@ -393,13 +413,13 @@ mod tests {
         let path = |time: f64| 1e-3 * time - 1e-7 * time * time;
         let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
-        for tick in 1..600 {
-            let now = f64::from(tick);
-            goal.advance(&scales);
-            if tick < 30 || tick * tick % 11 < 3 || tick % 23 == 0 {
-                goal.correct(GoalSample { q: &[path(now)], time: now }, &scales);
+        for i in 1..600 {
+            let now = f64::from(i);
+            let comes = i < 30 || i * i % 11 < 3 || i % 23 == 0;
+            tick(&mut goal, comes.then(|| path(now)), &scales);
+            if comes {
                 let error = goal.step()[0] - (path(now) - path(now - 1.0));
-                assert!(tick < 10 || error.abs() < 1e-12, "{error} in tick {tick}");
+                assert!(i < 10 || error.abs() < 1e-12, "{error} in tick {i}");
             }
         }
     }
@@ -422,16 +442,16 @@ mod tests {
         let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
         let (mut samples, mut before) = (vec![], Point::new());
-        for tick in 1..=400 {
-            let now = f64::from(tick);
-            goal.advance(&scales);
+        for i in 1..=400 {
+            let now = f64::from(i);
             // A gap of ten intervals lets the mean interval grow.
-            if tick % 8 == 0 && !(200..280).contains(&tick) {
-                goal.correct(GoalSample { q: &[path(now)], time: now }, &scales);
+            let comes = i % 8 == 0 && !(200..280).contains(&i);
+            tick(&mut goal, comes.then(|| path(now)), &scales);
+            if comes {
                 samples.push(path(now));
                 goal.remembered_from(&scales, &mut before);
                 let oldest = samples[samples.len().saturating_sub(3)];
-                assert!(tick < 24 || (oldest..=path(now)).contains(&before[0]), "{} in tick {tick}", before[0]);
+                assert!(i < 24 || (oldest..=path(now)).contains(&before[0]), "{} in tick {i}", before[0]);
             }
         }
     }
@@ -443,12 +463,9 @@ mod tests {
             let mut worst = 0.0_f64;
             let (scales, mut draws) = (scales(), rng::stream(seed, 0));
             let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
-            for tick in 1..=400 {
-                let now = f64::from(tick);
-                goal.advance(&scales);
-                if tick % 10 == 0 && tick <= 80 {
-                    goal.correct(GoalSample { q: &[noise * normal(&mut draws)], time: now }, &scales);
-                }
+            for i in 1..=400 {
+                let comes = i % 10 == 0 && i <= 80;
+                tick(&mut goal, comes.then(|| noise * normal(&mut draws)), &scales);
                 worst = worst.max(goal.q()[0].abs());
             }
             squares += worst * worst / 200.0;
@@ -460,12 +477,10 @@ mod tests {
     fn a_jump_is_taken_over_at_once() {
         let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.1], &JointState::at_rest(1), 0.0, 1.0);
-        for tick in 1..40 {
-            let (now, q) = (f64::from(tick), [if tick < 30 { 0.1 } else { 0.4 }]);
-            goal.advance(&scales);
-
-            goal.correct(GoalSample { q: &q, time: now }, &scales);
-            assert!((goal.q()[0] - q[0]).abs() < 1e-15 && goal.step()[0].abs() < 1e-15, "tick {tick}");
+        for i in 1..40 {
+            let q = if i < 30 { 0.1 } else { 0.4 };
+            tick(&mut goal, Some(q), &scales);
+            assert!((goal.q()[0] - q).abs() < 1e-15 && goal.step()[0].abs() < 1e-15, "tick {i}");
         }
     }
 
@@ -473,15 +488,12 @@ mod tests {
     fn a_goal_without_samples_comes_to_rest() {
         let scales = scales();
         let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
-        for tick in 1..=10 {
-            let now = f64::from(tick);
-            goal.advance(&scales);
-
-            goal.correct(GoalSample { q: &[1e-3 * now], time: now }, &scales);
+        for i in 1..=10 {
+            tick(&mut goal, Some(1e-3 * f64::from(i)), &scales);
         }
         let mut steps = vec![];
         for _ in 0..400 {
-            goal.advance(&scales);
+            tick(&mut goal, None, &scales);
             steps.push(goal.step()[0]);
         }
         assert!(steps[0] > 0.9e-3 && steps[399] == 0.0);

@@ -106,12 +106,13 @@ impl NoiseLevel {
             (0..N).filter(|k| *k != i).map(|k| (time - times[k]) / (times[i] - times[k])).product()
         });
         let variance = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
+        let samples: [&[f64]; N] = std::array::from_fn(|i| &self.samples[latest[i]][..]);
         let square = |j: usize| -> f64 {
-            let extrapolated: f64 =
-                latest.iter().zip(weights).map(|(slot, weight)| weight * self.samples[*slot][j]).sum();
+            let extrapolated: f64 = samples.iter().zip(weights).map(|(sample, weight)| weight * sample[j]).sum();
             if scales[j].is_finite() { ((sample[j] - extrapolated) / scales[j]).powi(2) } else { 0.0 }
         };
-        let squares: Point = (0..sample.len()).map(square).collect();
+        let mut squares = Point::new();
+        squares.extend((0..sample.len()).map(square));
         let sum: f64 = squares.iter().sum();
         if sum > 0.0 {
             for (fraction, square) in self.fractions.iter_mut().zip(&squares) {

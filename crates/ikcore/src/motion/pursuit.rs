@@ -69,7 +69,9 @@ impl Pursuit<'_> {
         for j in 0..q.len() {
             let goal_step = self.goal.step()[j];
             // Far from the goal its acceleration does not count, but its noise would.
-            let goal_change = if fractions.far { 0.0 } else { self.goal.change()[j] };
+            let goal_change = if fractions.is_some() { 0.0 } else { self.goal.change()[j] };
+            let [of_step, of_change, of_jerk] =
+                fractions.as_ref().map_or([1.0; 3], |[step, change, jerk]| [step[j], change[j], jerk[j]]);
             let straight = q[j] + state.step[j] + goal_change;
             let relative = Relative {
                 distance: q[j] - (self.goal.q()[j] - goal_step),
@@ -78,9 +80,8 @@ impl Pursuit<'_> {
                 changes: [self.reachable.lower()[j] - straight, self.reachable.upper()[j] - straight],
             };
             let Braking { acceleration, jerk } = self.braking[j];
-            let acceleration =
-                (fractions.change[j] * acceleration - goal_change.abs()).max(LEAST_FRACTION * acceleration);
-            let braking = Braking { acceleration, jerk: fractions.jerk[j] * jerk };
+            let acceleration = (of_change * acceleration - goal_change.abs()).max(LEAST_FRACTION * acceleration);
+            let braking = Braking { acceleration, jerk: of_jerk * jerk };
             let scale = self.scales.change[j];
             let noise = if scale.is_finite() { self.goal.uncertainty_of(j) * scale } else { 0.0 };
             let law = if noise > 0.0 {
@@ -89,8 +90,7 @@ impl Pursuit<'_> {
             } else {
                 slowest
             };
-            out[j] =
-                straight + relative.next_change(&braking, law, EDGE * noise, fractions.step[j] * self.scales.step[j]);
+            out[j] = straight + relative.next_change(&braking, law, EDGE * noise, of_step * self.scales.step[j]);
         }
         self.reachable.clip(out);
     }
@@ -102,14 +102,14 @@ impl Pursuit<'_> {
         ((SHARPER * memory).max(quickest), quickest)
     }
 
-    /// The fraction of its limits that each joint uses. A joint that moves with its goal has no way to go, however fast.
-    fn fractions(&self, q: &[f64]) -> Fractions {
+    /// The fractions of largest step, acceleration and jerk that each joint uses on a way to a far goal; `None` near it. A joint that moves
+    /// with its goal has no way to go, however fast.
+    fn fractions(&self, q: &[f64]) -> Option<[Point; 3]> {
         let way = |j: usize| (self.goal.q()[j] - self.goal.step()[j] - q[j]).abs();
         let n = q.len();
         let farthest = (0..n).map(|j| way(j) / self.scales.change[j]).fold(0.0, f64::max);
         if farthest <= FAR * (1.0 + self.goal.noise()) {
-            let all = Point::from_elem(1.0, n);
-            return Fractions { far: false, step: all.clone(), change: all.clone(), jerk: all };
+            return None;
         }
         let of = |limit: &dyn Fn(usize) -> f64| -> Point {
             let longest = (0..n).map(|j| way(j) / limit(j)).fold(0.0, f64::max);
@@ -117,22 +117,8 @@ impl Pursuit<'_> {
                 |j: usize| if longest > 0.0 { (way(j) / limit(j) / longest).max(LEAST_FRACTION) } else { 1.0 };
             (0..n).map(fraction).collect()
         };
-        Fractions {
-            far: true,
-            step: of(&|j| self.scales.step[j]),
-            change: of(&|j| self.braking[j].acceleration),
-            jerk: of(&|j| self.braking[j].jerk),
-        }
+        Some([of(&|j| self.scales.step[j]), of(&|j| self.braking[j].acceleration), of(&|j| self.braking[j].jerk)])
     }
-}
-
-/// Fractions of the limits of each joint.
-struct Fractions {
-    /// Whether the goal is far.
-    far: bool,
-    step: Point,
-    change: Point,
-    jerk: Point,
 }
 
 impl Relative {

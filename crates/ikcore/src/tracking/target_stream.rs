@@ -46,8 +46,8 @@ pub(super) struct TargetStream {
     /// Detector of repetitions, for rules that extrapolate.
     repeated: Option<RepeatedTargets>,
     last: Option<Arrival>,
-    /// Targets at the end of the previous tick.
-    before: Option<Arrival>,
+    /// Targets at the end of the previous tick, and their velocity.
+    before: Option<(TargetRow, Option<[f64; 3]>)>,
     /// Whether they had moved in that tick.
     moved_before: bool,
     /// Times at which the last targets were measured and arrived (s).
@@ -85,8 +85,8 @@ impl TargetStream {
     /// Motion of the first target to its `end` during the last tick, of `dt` (s). Without a previous tick, the target is
     /// assumed to have moved with its velocity or, if that is unknown, to have stood still.
     pub fn motion(&self, end: Target, dt: f64) -> TargetSegment {
-        let first = |arrival: &Arrival| Some((*arrival.targets.first()?, arrival.velocity));
-        match (self.before.as_ref().and_then(first), self.last.as_ref().and_then(|arrival| arrival.velocity)) {
+        let before = self.before.as_ref().and_then(|(targets, velocity)| Some((*targets.first()?, *velocity)));
+        match (before, self.last.as_ref().and_then(|arrival| arrival.velocity)) {
             (Some((begin, before)), velocity) => {
                 let velocities = before.zip(velocity).map(|(before, velocity)| [before, velocity]);
                 TargetSegment { begin, end, velocities, dt }
@@ -102,7 +102,7 @@ impl TargetStream {
     /// Whether a target has moved since the previous tick.
     pub fn moves(&self) -> bool {
         let both = self.before.as_ref().zip(self.last.as_ref());
-        both.is_none_or(|(before, last)| before.targets != last.targets)
+        both.is_none_or(|((before, _), last)| *before != last.targets)
     }
 
     /// Whether the targets stand still, or have jumped there from rest: there is time to reach them.
@@ -113,7 +113,7 @@ impl TargetStream {
     /// Sets the targets at t = 0.
     pub fn place(&mut self, arrival: Arrival) {
         self.last = Some(arrival);
-        self.before.clone_from(&self.last);
+        self.keep_as_before();
     }
 
     /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets,
@@ -121,9 +121,8 @@ impl TargetStream {
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
-    pub fn take(&mut self, arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
-        let Some(mut arrival) = arrival else { return Ok(None) };
-        let Arrival { targets, velocity, stamp, .. } = &mut arrival;
+    pub fn take(&mut self, mut arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
+        let Some(Arrival { targets, velocity, stamp, .. }) = &mut arrival else { return Ok(None) };
         let stamp = *stamp;
         if let Some(velocity) = velocity {
             require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
@@ -150,7 +149,7 @@ impl TargetStream {
                 *target = filter.filtered(target, interval);
             }
         }
-        self.last = Some(arrival);
+        self.last = arrival;
         Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
     }
 
@@ -162,7 +161,11 @@ impl TargetStream {
     /// Ends the tick.
     pub fn accept(&mut self) {
         self.moved_before = self.before.is_some() && self.moves();
-        self.before.clone_from(&self.last);
+        self.keep_as_before();
+    }
+
+    fn keep_as_before(&mut self) {
+        self.before = self.last.as_ref().map(|last| (TargetRow::from_slice(&last.targets), last.velocity));
     }
 
     /// Discards targets and filters, because the next targets belong to other tasks.

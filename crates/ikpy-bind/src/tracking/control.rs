@@ -1,6 +1,6 @@
 //! `ControlSession`, and reading of controller arguments.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 
 use ikcore::solver::Stopwatch;
 use ikcore::task::Tolerance;
@@ -10,13 +10,14 @@ use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use super::session::in_progress;
-use super::step::PyStep;
+use super::step::{PyStep, Remarks};
 use super::znnbas::PyZnnbas;
 use crate::convert::{array, copied, count, counted, own, rigid_rows, shape_text, summary, vector};
 use crate::error::{invalid, raise};
 use crate::limits::{PyLimits, Sampling, limits_without_robot};
 use crate::pickling;
 use crate::solver::PyBroydenBas;
+use crate::tips::TipErrors;
 use crate::traversal::traversed;
 
 /// A model-free controller for your own loop and hardware.
@@ -57,9 +58,16 @@ impl PyControlSession {
         let position = tip_pose("position", position)?;
         let (watch, mut session) = (Stopwatch::start(), self.session());
         let step = session.observe(&position).map_err(raise)?;
-        Ok(step.map(|step| {
-            let motion = [session.q().to_vec(), session.qd().to_vec()];
-            PyStep::new(py, step, motion, self.limits.clone_ref(py), watch.elapsed())
+        Ok(step.map(|core| PyStep {
+            core,
+            q: copied(py, session.q()).unbind(),
+            qd: copied(py, &session.qd()).unbind(),
+            limits: self.limits.clone_ref(py),
+            elapsed: watch.elapsed(),
+            tips: TipErrors::unnamed(),
+            remarks: Remarks::default(),
+            among: None,
+            around: OnceLock::new(),
         }))
     }
 

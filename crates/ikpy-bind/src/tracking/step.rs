@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use ikcore::limits::JointOutside;
-use ikcore::math::pose::Drift;
 use ikcore::message::Message;
 use ikcore::obstacle::{ClearSpace, Clearance, Contact, NearestContact};
 use ikcore::solver::Status;
@@ -15,7 +14,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::convert::row;
+use crate::convert::copied;
 use crate::error::raise;
 use crate::limits::PyLimits;
 use crate::obstacle::PyNearest;
@@ -28,33 +27,39 @@ use crate::wording::said;
 /// The result of one step of a `Tracker` or a `ControlSession`.
 #[pyclass(name = "Step", module = "beetle_ik", frozen)]
 pub struct PyStep {
-    core: Step,
+    pub core: Step,
     /// The configuration to command (n,) (rad, m).
     #[pyo3(get)]
-    q: Py<PyArray1<f64>>,
+    pub q: Py<PyArray1<f64>>,
     /// The joint velocity over the step (n,) (rad/s, m/s).
     #[pyo3(get)]
-    qd: Py<PyArray1<f64>>,
+    pub qd: Py<PyArray1<f64>>,
     /// The limits in force.
     #[pyo3(get)]
-    limits: Py<PyLimits>,
-    elapsed: Duration,
-    /// Joints that began outside their limits, if any still was.
-    outside: Vec<JointOutside>,
+    pub limits: Py<PyLimits>,
+    pub elapsed: Duration,
     /// Errors by tip.
-    tips: TipErrors,
-    /// Names of the joints, if the message may name some.
-    joints: Vec<String>,
+    pub tips: TipErrors,
+    pub remarks: Remarks,
     /// Clear space and configuration of the arm; `None` without obstacles and self-collision.
-    among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
-    /// Names the joints that limits of zero lock.
-    lock: Option<Arc<Message>>,
-    /// The constraint that holds the arm, or the levels of its targets, in words.
-    held_by: Option<String>,
-    /// Sentence about a target whose rotation had drifted.
-    drift: Option<String>,
+    pub among: Option<(Arc<ClearSpace<'static>>, Vec<f64>)>,
     /// Clearance, computed at the first access; `None` without obstacles and self-collision.
-    around: OnceLock<Option<Clearance>>,
+    pub around: OnceLock<Option<Box<Clearance>>>,
+}
+
+/// What the message of a step tells besides its outcome.
+#[derive(Debug, Default)]
+pub struct Remarks {
+    /// Joints that began outside their limits, if any still was.
+    pub outside: Vec<JointOutside>,
+    /// Names of the joints, if the message may name some.
+    pub joints: Vec<String>,
+    /// Names the joints that limits of zero lock.
+    pub lock: Option<Arc<Message>>,
+    /// The constraint that holds the arm, or the levels of its targets, in words.
+    pub held_by: Option<String>,
+    /// Sentence about a target whose rotation had drifted.
+    pub drift: Option<String>,
 }
 
 traversed!(PyStep: limits);
@@ -109,13 +114,13 @@ impl PyStep {
     /// NaN where nothing is checked; inf if nothing can touch.
     #[getter]
     fn clearance(&self) -> f64 {
-        self.around().as_ref().map_or(f64::NAN, |clearance| clearance.distance)
+        self.around().map_or(f64::NAN, |clearance| clearance.distance)
     }
 
     /// The nearest two bodies at `q`, a `Nearest`; None where nothing is checked, or if nothing can touch.
     #[getter]
     fn nearest(&self) -> Option<PyNearest> {
-        self.around().as_ref()?.nearest.clone().map(PyNearest::from)
+        self.around()?.nearest.clone().map(PyNearest::from)
     }
 
     fn __repr__(&self) -> String {
@@ -123,14 +128,11 @@ impl PyStep {
     }
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let (q, qd) = (self.q.bind(py).readonly(), self.qd.bind(py).readonly());
-        let around = self.around();
-        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, around, &self.outside, &self.joints);
+        let Remarks { outside, joints, lock, held_by, drift } = &self.remarks;
+        let state = (self.core, q.as_slice()?, qd.as_slice()?, self.elapsed, self.around(), outside, joints);
         let bytes = pickling::bytes(py, to_bytes("step", &state))?;
-        let lock = self.lock.as_deref().map(said);
-        pickling::restored_from::<Self>(
-            py,
-            (bytes, &self.limits, self.tips.bytes(py)?, lock, &self.drift, &self.held_by),
-        )
+        let lock = lock.as_deref().map(said);
+        pickling::restored_from::<Self>(py, (bytes, &self.limits, self.tips.bytes(py)?, lock, drift, held_by))
     }
 
     /// Restores a pickled value.
@@ -145,79 +147,33 @@ impl PyStep {
         drift: Option<String>,
         held_by: Option<String>,
     ) -> PyResult<Self> {
-        let (core, q, qd, elapsed, around, outside, joints): (_, Vec<f64>, Vec<f64>, _, Option<Clearance>, _, _) =
+        let (core, q, qd, elapsed, around, outside, joints): (_, Vec<f64>, Vec<f64>, _, Option<Box<Clearance>>, _, _) =
             from_bytes("step", bytes).map_err(raise)?;
-        let tips = TipErrors::restored(tips)?;
-        let step = Self::new(py, core, [q, qd], limits, elapsed).of_tips(tips).led_from(outside).naming(joints);
         let lock = lock.map(|lock| Arc::new(lock.into()));
-        Ok(Self { around: OnceLock::from(around), lock, drift, held_by, ..step })
+        Ok(Self {
+            core,
+            q: copied(py, &q).unbind(),
+            qd: copied(py, &qd).unbind(),
+            limits,
+            elapsed,
+            tips: TipErrors::restored(tips)?,
+            remarks: Remarks { outside, joints, lock, held_by, drift },
+            among: None,
+            around: OnceLock::from(around),
+        })
     }
 }
 
 impl PyStep {
-    /// Makes a step; `motion` is the configuration to command and the joint velocity over the step.
-    pub fn new(py: Python<'_>, core: Step, motion: [Vec<f64>; 2], limits: Py<PyLimits>, elapsed: Duration) -> Self {
-        let [q, qd] = motion.map(|values| row(py, values).unbind());
-        Self {
-            core,
-            q,
-            qd,
-            limits,
-            elapsed,
-            outside: vec![],
-            tips: TipErrors::unnamed(),
-            joints: vec![],
-            among: None,
-            lock: None,
-            held_by: None,
-            drift: None,
-            around: OnceLock::new(),
-        }
-    }
-
-    /// Adds the joints that began outside their limits.
-    pub fn led_from(self, outside: Vec<JointOutside>) -> Self {
-        Self { outside, ..self }
-    }
-
-    /// Adds the errors by tip.
-    pub fn of_tips(self, tips: TipErrors) -> Self {
-        Self { tips, ..self }
-    }
-
-    /// Adds the drift of the target's rotation to the message.
-    pub fn of_drifted_target(self, drift: Option<Drift>) -> Self {
-        Self { drift: drift.map(|drift| drift.to_string()), ..self }
-    }
-
-    /// Adds the constraint that holds the arm, in words.
-    pub fn held_by(self, held_by: Option<String>) -> Self {
-        Self { held_by, ..self }
-    }
-
-    /// Adds the names of the joints.
-    pub fn naming(self, joints: Vec<String>) -> Self {
-        Self { joints, ..self }
-    }
-
-    /// Adds the clear space of an arm, and its configuration `q`.
-    pub fn among(self, space: Option<Arc<ClearSpace<'static>>>, q: Vec<f64>) -> Self {
-        Self { among: space.map(|space| (space, q)), ..self }
-    }
-
-    /// Adds the joints that limits of zero lock.
-    pub fn of_locked(self, lock: Option<Arc<Message>>) -> Self {
-        Self { lock, ..self }
-    }
-
-    fn around(&self) -> &Option<Clearance> {
-        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| space.clearance(q)))
+    fn around(&self) -> Option<&Clearance> {
+        self.around.get_or_init(|| self.among.as_ref().map(|(space, q)| Box::new(space.clearance(q)))).as_deref()
     }
 
     /// Returns the message: the outcome, advice, and the body in the way.
     fn sentence(&self) -> Message {
-        let nearest = self.around().as_ref().and_then(|clearance| clearance.nearest.as_ref());
-        let lock = self.lock.as_ref().filter(|_| self.core.status == Status::Capped && self.core.idle.is_none());
+        let Remarks { outside, joints, lock, held_by, drift } = &self.remarks;
+        let nearest = self.around().and_then(|clearance| clearance.nearest.as_ref());
+        let lock = lock.as_ref().filter(|_| self.core.status == Status::Capped && self.core.idle.is_none());
         let advice = match (lock, nearest) {
             (Some(lock), _) => Message::clone(lock),
             (_, Some(nearest)) => self.core.advice_near(&nearest.contact),
@@ -225,8 +181,8 @@ impl PyStep {
         };
         // A lock is the reason why the arm stays away.
         let step = if lock.is_some() { Step { away: None, ..self.core } } else { self.core };
-        let message = step.message_with(advice, &self.outside, |j| self.joints.get(j).cloned().unwrap_or_default());
-        let message = match &self.drift {
+        let message = step.message_with(advice, outside, |j| joints.get(j).cloned().unwrap_or_default());
+        let message = match drift {
             Some(drift) => format!("{}; {drift}", said(&message)).into(),
             None => message,
         };
@@ -235,7 +191,7 @@ impl PyStep {
                 let Contact { link, other, distance } = contact;
                 format!("{} ({link} is {distance:.4} m from {other})", said(&message)).into()
             }
-            _ => match &self.held_by {
+            _ => match held_by {
                 Some(held_by) => format!("{} ({held_by})", said(&message)).into(),
                 None => message,
             },

@@ -1,8 +1,8 @@
 //! `Tracker`.
 
 use std::cell::Cell;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 use ikcore::obstacle::Surroundings;
 use ikcore::robot::Robot;
@@ -16,8 +16,8 @@ use pyo3::types::PyTuple;
 use super::arguments::{TrackArguments, tick_rule};
 use super::filters::read_filter;
 use super::session::in_progress;
-use super::step::PyStep;
-use crate::convert::{drifted_rows, point, summary, vector};
+use super::step::{PyStep, Remarks};
+use crate::convert::{copied, drifted_rows, point, summary, vector};
 use crate::error::{invalid, misfit, raise};
 use crate::ik::read_target_by;
 use crate::joint_order::{joint_numbers, joint_vector};
@@ -242,21 +242,27 @@ impl PyTracker {
         if let Some(Asked::Tips { keys, .. }) = target {
             *self.keys() = keys;
         }
-        let motion = [session.q().to_vec(), session.qd().to_vec()];
-        let (space, q, lock) = (session.space().cloned(), session.q().to_vec(), session.lock().cloned());
-        let tips = TipErrors { keys: self.keys().clone(), errors: session.tip_errors() };
         let names = || session.robot().joints().iter().map(|joint| joint.name.clone()).collect();
         let joints = if core.away.is_some() { names() } else { vec![] };
         let drift = drift.get().filter(|_| !self.drifted.swap(true, Ordering::Relaxed));
-        let step = PyStep::new(py, core, motion, self.limits.clone_ref(py), watch.elapsed());
         let held_by = match core.status {
             Status::HeldByConstraint => session.tightest(),
             Status::HeldByTorque => session.held_by_torque(),
             Status::LevelGivenUp | Status::Capped if core.idle.is_none() => session.levels_in_words(),
             _ => None,
         };
-        let step = step.among(space, q).of_tips(tips).naming(joints).held_by(held_by);
-        Ok(step.led_from(outside).of_locked(lock).of_drifted_target(drift))
+        let drift = drift.map(|drift| drift.to_string());
+        Ok(PyStep {
+            core,
+            q: copied(py, session.q()).unbind(),
+            qd: copied(py, &session.qd()).unbind(),
+            limits: self.limits.clone_ref(py),
+            elapsed: watch.elapsed(),
+            tips: TipErrors { keys: self.keys().clone(), errors: session.tip_errors() },
+            remarks: Remarks { outside, joints, lock: session.lock().cloned(), held_by, drift },
+            among: session.space().map(|space| (space.clone(), session.q().to_vec())),
+            around: OnceLock::new(),
+        })
     }
 
     /// Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

@@ -85,7 +85,7 @@ impl GoalPursuit {
         }
         self.now += 1.0;
         if let Some(goal) = &mut self.goal {
-            goal.advance(motion.scales());
+            goal.begin_tick();
         }
         let Some(ago) = tick.sampled_ago else { return found };
         let time = self.now - ago;
@@ -152,8 +152,9 @@ impl GoalPursuit {
     pub(super) fn pursue(&mut self, mut found: TickResult, tick: &Tick<'_>) -> TickResult {
         let StepContext { robot, q, aims, limited, .. } = tick.context;
         let Some(motion) = limited else { return found };
-        if let (Some(goal), Some(ago)) = (&mut self.goal, tick.sampled_ago) {
-            goal.correct(GoalSample { q: &self.sample, time: self.now - ago }, motion.scales());
+        if let Some(goal) = &mut self.goal {
+            let sample = tick.sampled_ago.map(|ago| GoalSample { q: &self.sample, time: self.now - ago });
+            goal.end_tick(sample, motion.scales());
         }
         match &self.goal {
             Some(goal) if !found.interrupted => {
@@ -191,14 +192,15 @@ impl GoalPursuit {
         let n = self.expected.len();
         self.sample = Point::from_slice(anew.unwrap_or(&self.expected));
         positions.clip(&mut self.sample);
-        let mut begin = self.sample.clone();
+        let mut begin = Point::from_slice(&self.sample);
         let mut lowest = f64::INFINITY;
         for i in 0..MOST_STEPS {
             let value = self.linearize(found, tick);
             if value > lowest {
                 break;
             }
-            (lowest, begin) = (value, self.sample.clone());
+            lowest = value;
+            begin.copy_from_slice(&self.sample);
             let preferred = (i == 0 && anew.is_none()).then(|| self.preferred(positions, tick));
             let least = self.linearization.least_damping(n);
             let lambda = least.max(LevenbergMarquardt::default().initial_damping * value);
@@ -241,7 +243,7 @@ impl GoalPursuit {
     /// remembers, moved along the negative gradient of the null-space goals. Motion in the null space is not extrapolated,
     /// since no target would ever stop it; a filter with a long memory would sustain it even from one sample ago.
     fn preferred(&self, positions: &Bounds, tick: &mut Tick<'_>) -> Point {
-        let mut preferred = self.sample.clone();
+        let mut preferred = Point::from_slice(&self.sample);
         if let (Some(goal), Some(motion)) = (&self.goal, tick.context.limited) {
             goal.remembered_from(motion.scales(), &mut preferred);
         }
