@@ -21,6 +21,17 @@ pub(super) fn shifted(mut coefficients: Coefficients, by: f64) -> Coefficients {
     coefficients
 }
 
+/// Returns the derivative of this order, padded with zeros.
+pub(super) fn nth_derivative(mut coefficients: Coefficients, order: usize) -> Coefficients {
+    for _ in 0..order {
+        for power in 1..POWERS {
+            coefficients[power - 1] = power as f64 * coefficients[power];
+        }
+        coefficients[POWERS - 1] = 0.0;
+    }
+    coefficients
+}
+
 /// Returns the polynomial with these coefficients, at most [`POWERS`] of them in ascending powers, padded with zeros.
 pub const fn polynomial<const N: usize>(given: [f64; N]) -> Coefficients {
     const { assert!(N <= POWERS) };

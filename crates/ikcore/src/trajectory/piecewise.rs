@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coefficients::{Coefficients, POWERS, shifted};
+use super::coefficients::{Coefficients, POWERS, nth_derivative, shifted};
 use super::hermite_segment;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::interrupt::checkpoint_at;
 use crate::math::Knots;
-use crate::math::polynomial::{Short, bound, derivative, evaluate, largest_magnitude, range, value};
+use crate::math::polynomial::{bound, evaluate, largest_magnitude, range, value};
 use crate::math::ticks::ticks;
 
 /// Largest jump of a joint at a knot (rad or m, relative beyond 1); stored or computed coefficients meet only up to
@@ -191,19 +191,19 @@ impl Trajectory {
 
     /// The exact largest speed of each joint (rad/s or m/s).
     pub fn max_velocity(&self) -> Vec<f64> {
-        self.largest(|position| derivative(position))
+        self.largest(1)
     }
 
     /// The exact largest acceleration of each joint within the segments (rad/s^2 or m/s^2). Jumps of the velocity at
     /// knots are not included.
     pub fn max_acceleration(&self) -> Vec<f64> {
-        self.largest(|position| derivative(&derivative(position)))
+        self.largest(2)
     }
 
     /// The exact largest jerk of each joint within the segments (rad/s^3 or m/s^3). Jumps of the acceleration at knots
     /// are not included.
     pub fn max_jerk(&self) -> Vec<f64> {
-        self.largest(|position| derivative(&derivative(&derivative(position))))
+        self.largest(3)
     }
 
     /// The same motion, slower by `factor`.
@@ -266,17 +266,18 @@ impl Trajectory {
         &self.coefficients[segment * n..(segment + 1) * n]
     }
 
-    /// Returns for each joint the largest magnitude over all segments of the `quantity` derived from its position.
-    fn largest(&self, quantity: impl Fn(&Coefficients) -> Short) -> Vec<f64> {
+    /// Returns for each joint the largest magnitude over all segments of the derivative of this order of its position.
+    fn largest(&self, order: usize) -> Vec<f64> {
         let mut largest = vec![0.0_f64; self.joints.len()];
         for segment in 0..self.knots.segments() {
             if checkpoint_at(segment).is_err() {
                 break; // the interrupted caller discards the result
             }
             for (largest, position) in largest.iter_mut().zip(self.segment(segment)) {
-                let (values, span) = (quantity(position), self.knots.span(segment));
-                if bound(&values, span) > *largest {
-                    *largest = largest.max(largest_magnitude(&values, 0.0, span));
+                let (of_order, span) = (nth_derivative(*position, order), self.knots.span(segment));
+                let values = &of_order[..POWERS - order];
+                if bound(values, span) > *largest {
+                    *largest = largest.max(largest_magnitude(values, 0.0, span));
                 }
             }
         }

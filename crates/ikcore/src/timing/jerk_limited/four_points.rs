@@ -201,11 +201,10 @@ impl FourPoints {
         let (mut of_slow, mut of_slower, mut across) = (F64x4::ZERO, F64x4::ZERO, [F64x4::ZERO; 3]);
         for row in rows {
             let [a, b] = row.used::<A>(&y);
-            let [a0, a1] = row.acceleration;
             // The rooms 1 - a and 1 + a: difference of their inverses, sum of the squares of these.
             let rooms = A::div_x4(F64x4::splat(2.0), A::mul_add_x4(-a, a, one));
             let difference = A::mul_x4(a, rooms);
-            barriers.add::<A>([difference, A::mul_add_x4(difference, difference, rooms)], [a0, a1, F64x4::ZERO]);
+            barriers.add_short::<A>([difference, A::mul_add_x4(difference, difference, rooms)], row.acceleration);
             // The rooms slow - b and slow + b: also the sum of their inverses, and the difference of the squares of these.
             let rooms = A::div_x4(F64x4::splat(2.0), A::mul_add_x4(-b, b, squared_slow));
             let [sum, difference] = [A::mul_x4(slow, rooms), A::mul_x4(b, rooms)];
@@ -225,7 +224,7 @@ impl FourPoints {
         curvature[1] = A::mul_add_x4(-slower, across[1], curvature[1]);
         curvature[2] = A::mul_add_x4(-slower, across[2], curvature[2]);
         let inverse = A::div_x4(one, A::mul_add_x4(-self.slowness, y[0], one));
-        barriers.add::<A>([-inverse, A::mul_x4(inverse, inverse)], [-self.slowness, F64x4::ZERO, F64x4::ZERO]);
+        barriers.add_short::<A>([-inverse, A::mul_x4(inverse, inverse)], [-self.slowness, F64x4::ZERO]);
         barriers.with_duration::<A>(barrier, A::mul_x4(self.share, slower), squared_slow)
     }
 }
@@ -248,17 +247,26 @@ struct FourDerivatives {
 }
 
 impl FourDerivatives {
+    /// Adds a barrier with these first and second derivatives by a linear form of y, y' and y''.
     #[inline(always)]
-    fn add<A: Arithmetic>(&mut self, [first, second]: [F64x4; 2], slope: [F64x4; 3]) {
-        let [x, y, z] = slope;
-        let of = [A::mul_x4(second, x), A::mul_x4(second, y), A::mul_x4(second, z)];
-        let factors = [(of[0], x), (of[0], y), (of[0], z), (of[1], y), (of[1], z), (of[2], z)];
-        for k in 0..3 {
-            self.gradient[k] = A::mul_add_x4(first, slope[k], self.gradient[k]);
-        }
-        for k in 0..6 {
-            self.curvature[k] = A::mul_add_x4(factors[k].0, factors[k].1, self.curvature[k]);
-        }
+    fn add<A: Arithmetic>(&mut self, [first, second]: [F64x4; 2], [x, y, z]: [F64x4; 3]) {
+        self.add_short::<A>([first, second], [x, y]);
+        let of_z = A::mul_x4(second, z);
+        self.gradient[2] = A::mul_add_x4(first, z, self.gradient[2]);
+        self.curvature[2] = A::mul_add_x4(of_z, x, self.curvature[2]);
+        self.curvature[4] = A::mul_add_x4(of_z, y, self.curvature[4]);
+        self.curvature[5] = A::mul_add_x4(of_z, z, self.curvature[5]);
+    }
+
+    /// The same for a form of y and y'.
+    #[inline(always)]
+    fn add_short<A: Arithmetic>(&mut self, [first, second]: [F64x4; 2], [x, y]: [F64x4; 2]) {
+        let [of_x, of_y] = [A::mul_x4(second, x), A::mul_x4(second, y)];
+        self.gradient[0] = A::mul_add_x4(first, x, self.gradient[0]);
+        self.gradient[1] = A::mul_add_x4(first, y, self.gradient[1]);
+        self.curvature[0] = A::mul_add_x4(of_x, x, self.curvature[0]);
+        self.curvature[1] = A::mul_add_x4(of_x, y, self.curvature[1]);
+        self.curvature[3] = A::mul_add_x4(of_y, y, self.curvature[3]);
     }
 
     /// These times `barrier`, with the duration, whose derivative by y is `slope`.
