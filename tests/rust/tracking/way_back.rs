@@ -10,7 +10,7 @@ use ikcore::robot::Robot;
 use ikcore::shape::Shape;
 use ikcore::solver::{Status, Unattended};
 use ikcore::task::Target;
-use ikcore::tracking::{Arrival, Session, Step, TrackOptions, Way};
+use ikcore::tracking::{Arrival, Idle, Session, Step, TrackOptions, Way};
 
 use super::clear::all_limits;
 
@@ -196,6 +196,30 @@ fn noise_of_a_stretched_arm_needs_no_way_back() {
             let step = session.step(&moved(&iiwa, &start, shift), &mut Unattended).unwrap();
             assert!(step.away.is_none_or(|away| away.way != Way::Taken), "seed {seed}, tick {tick}");
         }
+    }
+}
+
+#[test]
+fn an_arm_whose_targets_cease_rests_where_their_motion_has_led_it() {
+    let panda = robot("panda");
+    for limits in all_limits(&panda).into_iter().skip(1) {
+        let options = TrackOptions { limits: Some(limits), ..TrackOptions::default() };
+        let mut session = session(&panda, &START, &options);
+        let (mut rests_at, mut said) = (vec![], None);
+        for tick in 0..300 {
+            let arrival = (tick < 75 && tick % 3 == 0)
+                .then(|| Arrival::from(moved(&panda, &START, [0.0, 0.25 * DT * f64::from(tick), 0.0])));
+            let step = session.advance(arrival, &mut Unattended).unwrap();
+            assert!(step.away.is_none(), "tick {tick}: {}", step.message());
+            rests_at = if tick < 150 { session.q().to_vec() } else { rests_at };
+            said = Some((step.idle, step.message()));
+        }
+        let (idle, text) = said.unwrap();
+        let follows = ": the arm follows the motion of the last ones on, and then rests until the next one";
+        assert!(text.starts_with("no new target, 0.") && text.ends_with(follows), "{text}");
+        assert_eq!(idle, Some(Idle::Ceased));
+        let moved = session.q().iter().zip(&rests_at).map(|(q, before)| (q - before).abs());
+        assert!(moved.fold(0.0, f64::max) < 1e-6);
     }
 }
 

@@ -12,6 +12,7 @@ use super::goal_memory::{Circumstances, GoalMemory, NOISELESS};
 use super::goal_scales::Scales;
 use super::joint_state::JointState;
 use super::noise_level::{NoiseLevel, root_mean_square};
+use crate::math::vector::largest_difference;
 use crate::objective::Point;
 
 /// Limit of the difference between a sample and its prediction, in standard deviations: beyond it, the sample is no noise.
@@ -34,6 +35,9 @@ const MOVES_ON: f64 = 2.0;
 
 /// Longest time without a sample for which the goal keeps its velocity (ticks), for joints that are slow to reach full speed.
 const LONGEST: f64 = 300.0;
+
+/// Distance (rad, m) from the last sample at which a goal without samples has moved on.
+const MOVED_ON: f64 = 0.02;
 
 /// Standard deviations of suspected noise at which half of a velocity is trusted without samples.
 const DOUBTED: f64 = 3.0;
@@ -126,6 +130,11 @@ impl MovingGoal {
     /// Root mean square of the noise over the joints.
     pub fn noise(&self) -> f64 {
         self.noise.level()
+    }
+
+    /// Whether the goal has moved on since the last sample, though the next one is overdue: a target that may be there is not known.
+    pub fn has_outlived_samples(&self) -> bool {
+        self.now > self.arrived + self.interval + 1.0 && largest_difference(&self.q, &self.fitted[0]) > MOVED_ON
     }
 
     /// Ticks over which noise is averaged; 1 without noise.

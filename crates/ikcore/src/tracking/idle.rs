@@ -6,7 +6,7 @@ use crate::message::Message;
 use crate::task::TipError;
 use crate::wording::number;
 
-/// Why no target leads the arm in a tick: it brakes, then rests.
+/// Why no target leads the arm in a tick: it comes to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Idle {
     /// None has arrived yet.
@@ -15,6 +15,8 @@ pub enum Idle {
     Stopped,
     /// None has arrived for longer than this timeout (s).
     TimedOut(f64),
+    /// The next one is overdue, and the arm has followed the motion of the last ones on.
+    Ceased,
 }
 
 impl Idle {
@@ -24,6 +26,10 @@ impl Idle {
         let away = if has_target { format!(", {error} away from the last target") } else { String::new() };
         match self {
             Self::NoTarget => format!("no target yet{limits}: the arm comes to rest and waits for one"),
+            Self::Ceased => {
+                let follows = "the arm follows the motion of the last ones on, and then rests until the next one";
+                format!("no new target{away}{limits}: {follows}")
+            }
             Self::Stopped => format!("stopped by stop(){away}{limits}: the next target makes it go on"),
             Self::TimedOut(timeout) => {
                 format!(

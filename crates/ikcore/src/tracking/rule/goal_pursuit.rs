@@ -73,6 +73,11 @@ impl GoalPursuit {
         self.goal.as_ref().map(MovingGoal::q)
     }
 
+    /// Whether the goal has moved on without targets.
+    pub(super) fn has_outlived_targets(&self) -> bool {
+        self.goal.as_ref().is_some_and(MovingGoal::has_outlived_samples)
+    }
+
     /// Finds a sample of the goal if new targets have arrived, of age `tick.sampled_ago` (ticks) at the end of the tick.
     pub(super) fn find_sample(&mut self, tick: &mut Tick<'_>) -> TickResult {
         let StepContext { q, aims, limited, .. } = tick.context;

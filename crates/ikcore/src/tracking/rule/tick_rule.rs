@@ -133,6 +133,11 @@ impl RunningRule {
         }
     }
 
+    /// Whether the arm has followed the motion of its targets on, as none came.
+    pub(crate) fn has_outlived_targets(&self) -> bool {
+        matches!(self, Self::GoalPursuit(pursuit) if pursuit.has_outlived_targets())
+    }
+
     /// Runs one tick. `safety` moves samples of a goal away from obstacles.
     pub(crate) fn advance(&mut self, mut tick: Tick<'_>, safety: Option<&mut SafetyFilter>) -> TickResult {
         match self {

@@ -230,7 +230,8 @@ impl Session {
         };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
-        let idle = self.idle();
+        let ceased = || (status != Status::Solved && self.running.has_outlived_targets()).then_some(Idle::Ceased);
+        let idle = self.idle().or_else(ceased);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, idle, interrupted })
     }
 
@@ -309,6 +310,10 @@ impl Session {
     #[inline]
     fn look_for_way_back(&mut self, found: &mut TickResult, monitor: &mut dyn Monitor) {
         let Some(way_back) = self.way_back.as_mut().filter(|_| self.stopping.is_none()) else { return };
+        // Without targets the arm rests where their motion has led it, and does not go back to the last of them.
+        if self.running.has_outlived_targets() && !way_back.is_returning() {
+            return;
+        }
         let (context, score, goal) = (self.arm.context(), found.assessment.score, self.running.goal());
         let end = EndOfTick { context, score, before: &self.arm.before, goal, rng: &mut self.rng, monitor };
         let lines = OpenLines { safety: self.safety.as_deref_mut(), torques: self.torques.as_deref_mut() };
