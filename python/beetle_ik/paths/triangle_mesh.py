@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -123,8 +122,8 @@ def _arrays(surface: Any) -> tuple[Any, Any]:
 def _read(file: str | os.PathLike[str]) -> tuple[Any, Any]:
     name = os.fspath(file)
     trimesh = library("trimesh", "trimesh", "a surface from a file", extra="surfaces")
-    if not Path(name).is_file():
-        raise InvalidInputError(f"surface: no file '{name}'")
+    if not os.path.isfile(name):  # noqa: PTH113 - Path raises for names that are too long
+        raise InvalidInputError(f"surface: no file '{name:.200}'")
     try:
         mesh = trimesh.load_mesh(name)
         return mesh.vertices, mesh.faces

@@ -26,7 +26,7 @@ def require_own_files(model: str) -> None:
     file = Path(model).absolute()
     try:
         content = file.read_bytes()
-    except OSError:
+    except (OSError, ValueError):  # a ValueError for a name with a null byte
         return  # MuJoCo reports the error itself
     _Files(file).check(content, model)
 

@@ -32,7 +32,8 @@ for tick in range(round((out + pause + back + time) / dt)):
         said.append(step.message)
 end = (out + pause + back + time) + 60.0
 settled = 0
-while settled * dt < 1.0 and tick * dt < end:  # a motion of the joints may take longer, and from its end the arm follows
+# A motion of the joints may take longer, and from its end the arm follows.
+while settled * dt < 1.0 and tick * dt < end:
     tick += 1
     step = tracker.step(target(tick * dt))
     settled = 0 if step.message.startswith("on the way") else settled + 1

@@ -86,7 +86,9 @@ class CallsInDegrees(Attack):
         if not (np.all(q >= lower - SEEN) and np.all(q <= upper + SEEN)):
             raise BrokenError("q is outside the limits", q.tolist())
         far = float(np.linalg.norm(arms.kinematics(case["joints"], q[None])[0][0, :3, 3] - left["aim"][:3, 3]))
-        if np.isfinite(result.position_error) and abs(far - result.position_error) > SEEN * (1.0 + far):
+        # Degrees round the angles, and a long arm enlarges that.
+        rounding = SEEN * (1.0 + far) + 1e-15 * np.abs(q).max() * np.linalg.norm(left["aim"][:3, 3])
+        if np.isfinite(result.position_error) and abs(far - result.position_error) > rounding:
             raise BrokenError("position_error is not the error", (far, result.position_error))
         if result.success and case["weights"][0] > 0.0 and far > 2.0 * MET:
             raise BrokenError("success without the place", far)
