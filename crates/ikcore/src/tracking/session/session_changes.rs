@@ -19,8 +19,9 @@ impl Session {
     /// with the new ones.
     ///
     /// # Errors
-    /// [`Error::Contradiction`] for a robot that differs in anything else, [`Error::NoDynamics`] for one without masses where torques are
-    /// limited; the session is then as before.
+    /// [`Error::Contradiction`](crate::Error::Contradiction) for a robot that differs in anything else,
+    /// [`Error::NoDynamics`](crate::Error::NoDynamics) for one without masses where torques are limited; the session is then as
+    /// before.
     pub fn set_robot(&mut self, robot: &Robot) -> Result<()> {
         if *robot == self.arm.given {
             return Ok(());
