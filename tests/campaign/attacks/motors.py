@@ -72,7 +72,7 @@ class TrackedTorques(Attack):
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         q, dt, limit = np.array(left["commands"]), case["dt"], left["limits"].torque
-        ulps = 8 * np.spacing(np.abs(q).max(axis=1) + 1.0)
+        ulps = 32 * np.spacing(np.abs(q).max(axis=1) + 1.0)
         qd = np.diff(q, axis=0) / dt
         # A joint that moves by rounding alone rests: dry friction has no direction there.
         qd[np.abs(qd) <= ulps[1:, None] / dt] = 0.0
