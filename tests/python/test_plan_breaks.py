@@ -190,6 +190,19 @@ def test_points_out_of_reach_are_left_out() -> None:
     require_sound(plan, poses, np.full(6, -2 * np.pi), np.full(6, 2 * np.pi))
 
 
+def test_a_corner_at_the_end_of_what_can_be_followed_is_no_part_of_its_own() -> None:
+    robot = bik.Robot.planar([0.5, 0.5])
+    angles = np.radians([-90.0, 0.0, 90.0, 90.0, 135.0, 180.0])
+    radii = np.array([0.7934444427764789, 0.5, 1.0, 0.7124960762313146, 0.5, 1.0])
+    points = np.column_stack([radii * np.cos(angles), radii * np.sin(angles), np.zeros(6)])
+    limits = bik.Limits(velocity=2.0, acceleration=10.0, lower=[-3.0, -0.5], upper=[3.0, 0.5])
+    plan = bik.plan_along_path(robot, points, limits=limits, accuracy=0.002, breaks=True)
+    assert plan.success
+    assert plan.breaks
+    q = plan.trajectory.sample(np.linspace(0.0, plan.duration, 500))
+    assert np.all(np.abs(q[:, 1]) <= 0.5 + 1e-9)
+
+
 def test_bodies_in_the_way_are_named_and_passed() -> None:
     robot = UR5E.with_capsules(radius=0.03)
     poses = turned(0.0)

@@ -118,6 +118,7 @@ impl Interpolation<'_> {
         let mut ends = vec![0];
         ends.extend(self.tip_path.corners().map(|corner| waypoints.knots.partition_point(|knot| *knot < corner)));
         ends.push(last);
+        ends.dedup(); // a corner within rounding of an end
         ends.windows(2).map(|ends| spline(ends[0], ends[1])).collect()
     }
 
