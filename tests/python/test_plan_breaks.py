@@ -199,7 +199,7 @@ def test_a_corner_at_the_end_of_what_can_be_followed_is_no_part_of_its_own() -> 
     plan = bik.plan_along_path(robot, points, limits=limits, accuracy=0.002, breaks=True)
     assert plan.success
     assert plan.breaks
-    q = plan.trajectory.sample(np.linspace(0.0, plan.trajectory.duration, 500))
+    q = plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, 500))[0]
     assert np.all(np.abs(q[:, 1]) <= 0.5 + 1e-9)
 
 
