@@ -187,6 +187,15 @@ REFUSED = {
         "the joint equality 'high' of 'b'",
         "b",
     ),
+    "a weld beside the chain against couplings that fix its joint elsewhere": (
+        arm(
+            joint("b", "-0.25 -0.5 0 0 0", "g")
+            + joint("g", "-0.04 -1 0 0 0", "b")
+            + "<weld body1='body_e' body2='right'/>"
+        ),
+        "the weld equality of 'body_e' and 'right'",
+        "g",
+    ),
     "two bends of a joint": (
         arm(joint("d", "0 .5 .2 0 0", "c") + joint("d", "0 .5 .3 0 0", "b", "name='bend'")),
         "the joint equality 'bend' of 'd' and 'b'",

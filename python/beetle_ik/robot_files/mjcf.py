@@ -104,6 +104,7 @@ class _Reader:
         chain = {joint for joint in range(len(self.joints)) if self.equalities.leader(joint) in robot.joint_names}
         for tip in robot.tips:
             chain |= self.equalities.between((self._carrier(robot.link_names[0]), self._carrier(tip)))
+        chain = self.equalities.coupled_with(chain)
         for found in self.equalities.open_in(robot):
             if chain & found.joints:
                 coupled = listed([self.joints[joint] for joint in sorted(found.joints)])

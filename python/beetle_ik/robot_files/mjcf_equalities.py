@@ -51,7 +51,9 @@ class Equalities:
         self.active = [] if model.opt.disableflags & off else [int(i) for i in np.flatnonzero(model.eq_active0)]
         self.drives: dict[int, Drive] = {}
         self.curves: dict[int, Curve] = {}
-        self._solve([equation for equality in self.active for equation in self._linear(equality)])
+        equations = [equation for equality in self.active for equation in self._linear(equality)]
+        self._coupled = [set(factors) for factors, _ in equations]
+        self._solve(equations)
         for equality in self.active:
             self._follow_curve(equality)
 
@@ -122,6 +124,12 @@ class Equalities:
                 start = stretches.pop()[0]
             stretches.append((start, end))
         return min(stretches, key=lambda ends: max(ends[0] - rest, rest - ends[1]), default=None)
+
+    def coupled_with(self, joints: set[int]) -> set[int]:
+        """Returns these joints and all that linear equalities couple with them."""
+        while more := {joint for each in self._coupled if each & joints for joint in each} - joints:
+            joints = joints | more
+        return joints
 
     def open_in(self, robot: Robot) -> Iterator[Open]:
         """Yields the equalities that configurations of the robot do not keep."""
