@@ -487,3 +487,11 @@ def test_forged_bytes_are_refused_or_used(value: object) -> None:
             except bik.BeetleIkError:
                 refused += 1
     assert refused > 0
+
+
+def test_a_restored_grid_without_voxels_is_shown() -> None:
+    stored = bytes.fromhex(
+        "03e27ee31ea5d1ca4d066c696e6b5f318a000000000000000000000000000000000000000000000000000000000000e0"
+        "3f000000000000000000000000000000007b14ae47e17a943f0000"
+    )
+    assert "[]" in repr(bik.Body._restore(stored).shape)

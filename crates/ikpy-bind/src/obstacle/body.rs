@@ -139,8 +139,9 @@ fn voxels_text(grid: &Grid) -> String {
     }
     let word = |occupied: &bool| if *occupied { "True" } else { "False" };
     let row = |voxels: &[bool]| format!("[{}]", voxels.iter().map(word).collect::<Vec<_>>().join(", "));
-    let slab = |voxels: &[bool]| format!("[{}]", voxels.chunks(z).map(row).collect::<Vec<_>>().join(", "));
-    format!("[{}]", grid.occupied().chunks(y * z).map(slab).collect::<Vec<_>>().join(", "))
+    // A restored grid may have sides of no voxels.
+    let slab = |voxels: &[bool]| format!("[{}]", voxels.chunks(z.max(1)).map(row).collect::<Vec<_>>().join(", "));
+    format!("[{}]", grid.occupied().chunks((y * z).max(1)).map(slab).collect::<Vec<_>>().join(", "))
 }
 
 fn point_of(pose: &Pose) -> [f64; 3] {
