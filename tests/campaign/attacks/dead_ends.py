@@ -84,7 +84,7 @@ class DeadEnds(Attack):
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         q, robot = left["q"], left["robot"]
         values = np.linalg.svd(robot.jacobian(q[0]), compute_uv=False)
-        enlarged = 6.0 if values[-1] > 0.02 * values[0] else 35.0  # singular arms enlarge noise, as the page says
+        enlarged = 6.0 if values[-1] > 0.02 * values[0] else 20.0  # singular arms enlarge noise, as the page says
         if left["away"] > 1e-3 + enlarged * case["noise"]:
             raise BrokenError("the arm stays away from its target", {"away": left["away"], "said": left["said"][-1:]})
         if any(text.startswith("nearer than in the tick before") for text in left["said"]):

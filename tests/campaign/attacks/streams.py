@@ -14,8 +14,8 @@ STARTS = {
     "ur5e": [0.3, -1.2, 1.6, -1.9, -1.5, 0.4],
 }
 KNOWN = 2.0  # s: until then the tracker learns how noisy the stream is
-# Times the deviation without losses plus the way in the longest gap; 1.1 in 1,986 of 2,000 cases, at most 1.8.
-ALLOWED = 3.0
+# Times the deviation without losses plus the way in the longest gap; 1.1 in 1,986 of 2,000 cases.
+ALLOWED = 2.0
 
 # `run` returns the largest distance of the tip from the path, and of the path from where it was in the last packet.
 FOLLOWED = """

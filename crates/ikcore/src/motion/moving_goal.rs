@@ -132,7 +132,7 @@ impl MovingGoal {
         self.noise.level()
     }
 
-    /// Whether the goal has moved on since the last sample, though the next one is overdue: a target that may be there is not known.
+    /// Whether the goal has moved on since the last sample although the next one is overdue.
     pub fn has_outlived_samples(&self) -> bool {
         self.now > self.arrived + self.interval + 1.0 && largest_difference(&self.q, &self.fitted[0]) > MOVED_ON
     }

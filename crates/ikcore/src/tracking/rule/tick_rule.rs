@@ -133,7 +133,7 @@ impl RunningRule {
         }
     }
 
-    /// Whether the arm has followed the motion of its targets on, as none came.
+    /// Whether the arm follows the motion of its last targets on, because no new one has come.
     pub(crate) fn has_outlived_targets(&self) -> bool {
         matches!(self, Self::GoalPursuit(pursuit) if pursuit.has_outlived_targets())
     }
