@@ -74,8 +74,8 @@ impl RoundedPath {
 #[derive(Debug, Default)]
 pub(super) struct SlowCorners {
     stopped: bool,
-    /// Numbers of rounded paths.
-    rounded: Vec<usize>,
+    /// The number of the rounded path at which the search ended; narrower ones are slower still.
+    rounded: Option<usize>,
 }
 
 /// A path that the tip follows, as joint motion.
@@ -157,7 +157,7 @@ impl<'a> PathProblem<'a> {
             }
             Ok(duration)
         };
-        let (mut of_wider, mut of_stopped, mut of_rounded) = (f64::INFINITY, 0.0, vec![]);
+        let (mut of_wider, mut of_stopped, mut ended) = (f64::INFINITY, 0.0, None);
         for corners in Corners::on(self.tip_path) {
             let stops = *corners == Corners::Stopped;
             if stops && slow.stopped {
@@ -167,23 +167,21 @@ impl<'a> PathProblem<'a> {
             of_stopped = if stops { duration } else { of_stopped };
             of_wider = of_wider.min(duration);
         }
-        let may_be_quick = |(number, rounded): &(usize, &RoundedPath)| {
-            may_round && rounded.off < accuracy && !slow.rounded.contains(number)
-        };
-        for (number, rounded) in self.rounded.iter().enumerate().filter(may_be_quick) {
+        let tried = &self.rounded[..slow.rounded.unwrap_or(self.rounded.len())];
+        for (number, rounded) in tried.iter().enumerate().filter(|(_, it)| may_round && it.off < accuracy) {
             let interpolation = on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off);
             let Some(start) = interpolation.moved(nominal.clone()) else { continue };
             let duration = timed(interpolation, start)?;
-            of_rounded.push((number, duration));
             // The narrower, the slower: what is no quicker than before ends the search.
             if duration > of_wider {
+                ended = Some((number, duration));
                 break;
             }
             of_wider = duration;
         }
         let least = quickest.as_ref().map_or(f64::INFINITY, |(least, ..)| MUCH_SLOWER * least);
         slow.stopped |= of_stopped > least;
-        slow.rounded.extend(of_rounded.iter().filter(|(_, duration)| *duration > least).map(|(number, _)| number));
+        slow.rounded = ended.filter(|(_, duration)| *duration > least).map(|(number, _)| number).or(slow.rounded);
         let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone(), f64::INFINITY);
         Ok(quickest.map_or_else(stopping, |(duration, interpolation, waypoints)| (interpolation, waypoints, duration)))
     }
