@@ -10,7 +10,7 @@ use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
-use super::strips::{Kept, Strips};
+use super::strips::{Strictness, Strips};
 use super::tip_segments::TipSegments;
 use super::torque_bounds::TorqueBounds;
 use super::torque_segments::TorqueSegments;
@@ -49,7 +49,7 @@ impl SpeedProfile {
         let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
         let torques = torques.map_or(Ok(vec![]), |torques| torques.over(&segments, &velocity_curve))?;
         let (derivatives, strips, segments_of, torques) = (&mut derivatives, &mut strips, &segments[..], &torques[..]);
-        let kept = Kept::Throughout;
+        let kept = Strictness::Throughout;
         let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips, kept };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
@@ -73,7 +73,7 @@ impl SpeedProfile {
         let averages = torques.averages();
         let torques: Vec<_> = averages.iter().collect();
         let (derivatives, strips, segments_of, torques) = (&mut derivatives, &mut strips, &segments[..], &torques[..]);
-        let kept = Kept::OnAverage;
+        let kept = Strictness::OnAverage;
         let mut pass = Pass { path, limits, segments: segments_of, tips: None, torques, derivatives, strips, kept };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
@@ -102,7 +102,7 @@ struct Pass<'a> {
     torques: &'a [&'a TorqueBounds],
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
-    kept: Kept,
+    kept: Strictness,
 }
 
 impl Pass<'_> {

@@ -11,9 +11,9 @@ use super::tip_segments::TipSegments;
 use super::torque_bounds::TorqueBounds;
 use crate::math::arithmetic::by_instructions;
 
-/// Where on a segment limits are kept.
+/// How strictly limits are kept over a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kept {
+pub(super) enum Strictness {
     /// At every point.
     Throughout,
     /// On average: a motion that takes about as long as on the finest grid, but exceeds them somewhere.
@@ -102,7 +102,13 @@ impl Strips {
     ///
     /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
     /// its three Bernstein coefficients bound it at every point, not only at grid points.
-    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &ConstantLimits, kept: Kept) {
+    pub(super) fn fill(
+        &mut self,
+        derivatives: &PathDerivatives,
+        length: f64,
+        limits: &ConstantLimits,
+        kept: Strictness,
+    ) {
         let n = limits.acceleration.len();
         self.offsets.resize(3 * n, 0.0);
         self.slopes.resize(3 * n, 0.0);
@@ -116,8 +122,8 @@ impl Strips {
             (offsets[2 * n + j], slopes[2 * n + j]) = (d2[j] + 2.0 * length * e1[j], e1[j]);
         }
         let rows = match kept {
-            Kept::Throughout => 3 * n,
-            Kept::OnAverage => {
+            Strictness::Throughout => 3 * n,
+            Strictness::OnAverage => {
                 for row in [&mut *offsets, &mut *slopes] {
                     (0..n).for_each(|j| row[j] = (row[j] + row[n + j] + row[2 * n + j]) / 3.0);
                 }

@@ -7,7 +7,7 @@ use crate::constraint::{FourTorquePoints, JointTorques, TooHeavy};
 pub(super) type Node = usize;
 
 /// A point of a path: a piece, and the path parameter within it.
-pub(super) type Place = (usize, f64);
+pub(super) type NodePlace = (usize, f64);
 
 /// Points of a path, and the terms there: of those asked for, four at a time.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub(super) struct TorqueNodes<'a> {
     four: FourTorquePoints,
     /// Positions of the joints and their first two derivatives at a point.
     point: [Vec<f64>; 3],
-    places: Vec<Place>,
+    places: Vec<NodePlace>,
     /// By node, by term, by joint.
     terms: Vec<f64>,
 }
@@ -43,7 +43,7 @@ impl<'a> TorqueNodes<'a> {
     }
 
     /// A new node, whose terms are not known yet.
-    pub(super) fn ask(&mut self, place: Place) -> Node {
+    pub(super) fn ask(&mut self, place: NodePlace) -> Node {
         self.places.push(place);
         self.places.len() - 1
     }
@@ -61,7 +61,7 @@ impl<'a> TorqueNodes<'a> {
     ///
     /// # Errors
     /// The first place where a joint cannot hold the arm.
-    pub(super) fn find(&mut self) -> Result<(), (Place, TooHeavy)> {
+    pub(super) fn find(&mut self) -> Result<(), (NodePlace, TooHeavy)> {
         let n = self.torques.dof();
         let first = self.terms.len() / (TERMS * n);
         self.terms.resize(TERMS * n * self.places.len(), 0.0);

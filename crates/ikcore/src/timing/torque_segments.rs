@@ -9,7 +9,7 @@ use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
 use super::torque_bounds::{HalfPlane, KeptTorque, TorqueBounds, largest_terms};
-use super::torque_nodes::{Node, Place, TorqueNodes};
+use super::torque_nodes::{Node, NodePlace, TorqueNodes};
 use crate::constraint::{ALL_FACTORS, BendScratch, Drag, Friction, JointTorques, Rest, TIGHT, TooHeavy};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
@@ -96,7 +96,7 @@ impl SegmentTorques {
     }
 
     /// The node at a place in a piece, if there is one.
-    fn node(&self, (piece, s): Place) -> Option<Node> {
+    fn node(&self, (piece, s): NodePlace) -> Option<Node> {
         let Segment { from, length, .. } = self.segment;
         let k = [0.0, 0.5, 1.0].iter().position(|part| from + part * length == s && piece == self.segment.piece)?;
         Some(self.nodes[k])
@@ -308,10 +308,16 @@ impl<'a> TorqueSegments<'a> {
     /// the torque that holds it up leaves this `room`.
     #[inline]
     fn drags(&self, segment: &Segment, part: Part, (of, room): (&LimitedJoint, f64), square: f64) -> [Drag; 2] {
-        let LimitedJoint { joint, friction, .. } = *of;
+        let friction = of.friction;
         if friction.damping == 0.0 {
             return [Drag { at_rest: friction.dry, per_square: 0.0 }; 2];
         }
+        self.viscous_drags(segment, part, (of, room), square)
+    }
+
+    /// [`drags`](Self::drags) of a joint with viscous friction.
+    fn viscous_drags(&self, segment: &Segment, part: Part, (of, room): (&LimitedJoint, f64), square: f64) -> [Drag; 2] {
+        let LimitedJoint { joint, friction, .. } = *of;
         let half = 0.5 * (part.ends[1] - part.ends[0]);
         let [_, first, second] = self.path.joint_at(segment.piece, segment.from + part.ends[0] + half, joint);
         let third = 6.0 * self.path.powers(segment.piece)[3][joint];
@@ -319,7 +325,7 @@ impl<'a> TorqueSegments<'a> {
         [first + most, most - first].map(|rate| friction.drag(rate, room, square))
     }
 
-    fn too_heavy(&self, (piece, from): Place, found: Option<TooHeavy>) -> Error {
+    fn too_heavy(&self, (piece, from): NodePlace, found: Option<TooHeavy>) -> Error {
         let s = number(self.path.breaks()[piece] + from);
         let problem = match found {
             Some(found) => self.limits.heavy_in_words(found),
