@@ -158,6 +158,16 @@ impl JointTorques {
         self.limits.len()
     }
 
+    /// Robot whose joints these are.
+    pub(super) fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Its bodies.
+    pub(super) fn dynamics(&self) -> &Dynamics {
+        &self.dynamics
+    }
+
     /// Room for a point.
     pub fn point(&self) -> TorquePoint {
         let zero = vec![0.0; self.dof()];

@@ -12,6 +12,7 @@
 //! | `keep_sweep` | certificate of a motion, and its largest errors |
 //! | `joint_span` | intervals of joint motions |
 //! | `joint_torques`, `torque_bend` | limits of joint torques; how far torques get off parabolas |
+//! | `four_torque_points` | joint torques along a path at four points at a time |
 //! | `hold_check` | whether joints can hold the arm along straight lines |
 //! | `largest_factor` | the largest factor by which a motion exceeds limits, from bounds over intervals |
 //! | `onto` | configurations moved to where constraints hold |
@@ -19,6 +20,7 @@
 //! | `tip_rates` | limits of the speed, acceleration and turn speed of tips |
 
 mod drift;
+mod four_torque_points;
 mod gauge;
 mod hold_check;
 mod joint_span;
@@ -32,9 +34,12 @@ mod tip_jet;
 mod tip_rates;
 mod torque_bend;
 
+pub(crate) use four_torque_points::FourTorquePoints;
 pub(crate) use hold_check::HoldCheck;
 pub(crate) use joint_span::JointSpan;
-pub(crate) use joint_torques::{Drag, JointTorques, TooHeavy, TorqueExcess, TorquePoint, TorqueTerms, control_points};
+pub(crate) use joint_torques::{
+    Drag, Friction, JointTorques, TooHeavy, TorqueExcess, TorquePoint, TorqueTerms, control_points,
+};
 pub use keep::Keep;
 pub(crate) use keep::{KeepRow, refuse_broken};
 pub(crate) use keep_sweep::KeepScratch;

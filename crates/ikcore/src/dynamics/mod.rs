@@ -10,6 +10,7 @@
 //! | `rigid_bodies` | moving bodies of a robot, gravity, friction and rotors |
 //! | `scratch`, `wide_vectors` | scratch memory and registers of the kernels |
 //! | `inverse` | recursive Newton-Euler algorithm: the torques of a motion |
+//! | `path_terms` | torques along a path, at four points at a time |
 //! | `center_of_mass` | centre of all masses, and its Jacobian |
 //! | `gravity` | torques that hold the bodies up |
 //! | `holding_slope` | derivatives of those torques |
@@ -25,6 +26,7 @@ mod inertia;
 mod inverse;
 mod mass_matrix;
 mod mass_moments;
+mod path_terms;
 mod rigid_bodies;
 mod rotation_vector_rate;
 mod scratch;
@@ -33,6 +35,7 @@ mod wide_vectors;
 pub use inertia::Inertia;
 pub use inverse::{AppliedWrench, DynamicState};
 pub(crate) use mass_moments::MassMoments;
+pub(crate) use path_terms::{BodyOnPath, PathPoints, PathTerms};
 pub(crate) use rigid_bodies::MovingBody;
 pub use rigid_bodies::{Dynamics, JointDrive};
 pub use scratch::DynamicsScratch;

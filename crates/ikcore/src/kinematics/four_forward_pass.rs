@@ -18,17 +18,20 @@ pub(super) fn four_forward_pass<A: Arithmetic, const N: usize>(
     mut visit: impl FnMut(usize, &RunningFrames<Four<A>>),
 ) -> RunningFrames<Four<A>> {
     let (sines, cosines, slides) = stage_motions::<A, N>(chain, qs);
-    let stage = |i: usize| {
-        let [sine, cosine, slide] = [Four::of(F64x4(sines[i])), Four::of(F64x4(cosines[i])), Four::of(slides[i])];
-        RunningFrames::<Four<A>>::splat(&chain.stages.frame(i)).moved(sine, cosine, slide)
-    };
-    let mut frame = stage(0);
+    let mut frame = stage::<A>(&chain.stages.frame(0), sines[0], cosines[0], slides[0]);
     visit(0, &frame);
     for i in 1..N {
-        frame = frame.then(stage(i));
+        frame = frame.then(stage::<A>(&chain.stages.frame(i), sines[i], cosines[i], slides[i]));
         visit(i, &frame);
     }
     frame
+}
+
+/// Returns the frames that a stage moves, relative to the one before. A function: a closure would be compiled without the instructions of the
+/// calling kernel.
+#[inline(always)]
+fn stage<A: Arithmetic>(frame: &Frame, sines: [f64; 4], cosines: [f64; 4], slides: F64x4) -> RunningFrames<Four<A>> {
+    RunningFrames::splat(frame).moved(Four::of(F64x4(sines)), Four::of(F64x4(cosines)), Four::of(slides))
 }
 
 /// Computes sines, cosines and translations (m) of all stages.

@@ -20,7 +20,7 @@ impl PathDerivatives {
 
     /// Computes the derivatives of `path` over `segment`.
     pub(super) fn fill(&mut self, path: &JointPath, segment: &Segment) {
-        let Segment { piece, from, length } = *segment;
+        let Segment { piece, from, length, .. } = *segment;
         let [_, c1, c2, c3] = path.powers(piece);
         let n = c1.len();
         let [d0, d1, d2] = self.first.each_mut().map(|row| &mut row[..n]);

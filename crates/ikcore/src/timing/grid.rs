@@ -12,6 +12,8 @@ pub(super) struct Segment {
     pub from: f64,
     /// Length (path parameter).
     pub length: f64,
+    /// Whether its piece begins at a corner of the path.
+    pub is_after_corner: bool,
 }
 
 /// Largest number of grid points, which takes a tenth of a second; more count as a mistake.
@@ -44,23 +46,26 @@ pub(super) fn cut(path: &JointPath, wanted: usize) -> Vec<Segment> {
     let last = path.pieces() - 1;
     let total = path.breaks()[last + 1] - path.breaks()[0];
     let mut segments = Vec::with_capacity(wanted + 2 * path.pieces());
-    let mut rests_before = true;
+    let mut is_after_corner = false;
     for piece in 0..=last {
         let length = path.length(piece);
-        let rests_after = piece == last || path.has_corner_after(piece);
+        let is_before_corner = piece < last && path.has_corner_after(piece);
+        let (rests_before, rests_after) = (piece == 0 || is_after_corner, piece == last || is_before_corner);
         // Slightly less than the quotient, so that rounding does not add one to each piece.
         let count = (wanted as f64 * length / total - 1e-6).ceil() as usize;
         let count = count.max(if rests_before || rests_after { 2 } else { 1 });
         let halvings = |rests: bool| if rests { HALVINGS.min(count / SEGMENTS_PER_HALVING) } else { 0 };
-        cut_piece(piece, length, count, [halvings(rests_before), halvings(rests_after)], &mut segments);
-        rests_before = rests_after;
+        let whole = Segment { piece, from: 0.0, length, is_after_corner };
+        cut_piece(&whole, count, [halvings(rests_before), halvings(rests_after)], &mut segments);
+        is_after_corner = is_before_corner;
     }
     segments
 }
 
 /// Cuts a piece into `count` segments; the first is halved `before` times and the last `after` times towards the ends
 /// of the piece.
-fn cut_piece(piece: usize, length: f64, count: usize, [before, after]: [usize; 2], segments: &mut Vec<Segment>) {
+fn cut_piece(piece: &Segment, count: usize, [before, after]: [usize; 2], segments: &mut Vec<Segment>) {
+    let length = piece.length;
     let even = count - before - after;
     let step = length / even as f64;
     let fraction = |halvings: usize| step * 0.5_f64.powi(halvings as i32);
@@ -70,7 +75,7 @@ fn cut_piece(piece: usize, length: f64, count: usize, [before, after]: [usize; 2
     let mut from = 0.0;
     let ends = near_begin.chain(between.skip(1).take(even - 1)).chain(near_end).chain([length]);
     for to in ends {
-        segments.push(Segment { piece, from, length: to - from });
+        segments.push(Segment { from, length: to - from, ..*piece });
         from = to;
     }
 }

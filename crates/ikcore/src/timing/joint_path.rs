@@ -12,6 +12,9 @@ pub(super) const POWERS: usize = 4;
 /// Largest difference of a derivative on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;
 
+/// Largest difference of a derivative on both sides of a break that is only rounding (relative).
+const SAME: f64 = 1e-12;
+
 /// Largest slope that counts as zero, relative to the largest of the path: rounding error.
 const VANISHING: f64 = 1e-12;
 
@@ -131,7 +134,8 @@ impl JointPath {
     pub(super) fn powers(&self, piece: usize) -> [&[f64]; POWERS] {
         let n = self.joints.len();
         let of_piece = &self.coefficients[piece * POWERS * n..(piece + 1) * POWERS * n];
-        [0, 1, 2, 3].map(|power| &of_piece[power * n..(power + 1) * n])
+        let ((c0, c1), (c2, c3)) = (of_piece[..2 * n].split_at(n), of_piece[2 * n..].split_at(n));
+        [c0, c1, c2, c3]
     }
 
     /// Adds a cubic to a joint in a piece.
@@ -211,6 +215,17 @@ impl JointPath {
     /// Whether the direction jumps between this piece and the next, so that the joints must stop there.
     pub(super) fn has_corner_after(&self, piece: usize) -> bool {
         self.jumps_after(piece, 1)
+    }
+
+    /// Whether the first two derivatives at the end of this piece are those at the start of the next, up to rounding.
+    pub(super) fn continues_after(&self, piece: usize) -> bool {
+        let end = self.length(piece);
+        let ([_, c1, c2, c3], [_, next1, next2, _]) = (self.powers(piece), self.powers(piece + 1));
+        let is_same = |one: f64, other: f64| (one - other).abs() <= SAME * one.abs();
+        (0..self.joints.len()).all(|joint| {
+            let first = c1[joint] + end * (2.0 * c2[joint] + end * 3.0 * c3[joint]);
+            is_same(first, next1[joint]) && is_same(2.0 * c2[joint] + 6.0 * end * c3[joint], 2.0 * next2[joint])
+        })
     }
 
     /// Whether the second derivative jumps between this piece and the next: the jerk would be infinite.

@@ -15,6 +15,8 @@
 //! | `bounding_line` | lines that bound the acceleration along the path |
 //! | `strips` | the acceleration limits |
 //! | `tip_segments` | the limits of tips over segments |
+//! | `torque_bounds` | the bounds that keep the torque of a joint |
+//! | `torque_nodes` | the terms of joint torques at points of a path |
 //! | `torque_segments` | the limits of joint torques over segments |
 //! | `reachability` | the fastest speed profile on a grid |
 //! | `refine` | adaptive refinement of the grid |
@@ -47,6 +49,8 @@ mod strips;
 mod time_optimal;
 mod time_scaling;
 mod tip_segments;
+mod torque_bounds;
+mod torque_nodes;
 mod torque_segments;
 mod tube;
 mod velocity_curve;

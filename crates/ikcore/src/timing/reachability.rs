@@ -5,17 +5,16 @@
 //! method on the width of the interval that the strips leave for u, which is concave and piecewise linear in x: it
 //! converges from outside in a few steps, exactly.
 
-use std::rc::Rc;
-
 use super::bounding_line::Line;
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::grid::{Segment, UNLIMITED};
 use super::joint_path::JointPath;
-use super::strips::Strips;
+use super::strips::{Strictness, Strips};
 use super::tip_segments::TipSegments;
-use super::torque_segments::{SegmentTorques, TorqueSegments};
-use super::velocity_curve::maximum_velocity_curve;
+use super::torque_bounds::TorqueBounds;
+use super::torque_segments::TorqueSegments;
+use super::velocity_curve::{average_velocity_curve, maximum_velocity_curve};
 use crate::constraint::TipRates;
 use crate::error::{Error, Result};
 use crate::interrupt::{checkpoint, checkpoint_at};
@@ -48,12 +47,37 @@ impl SpeedProfile {
         let tips = limits.tips.as_ref().map(|rates| TipSegments::new(path, &segments, rates)).transpose()?;
         let velocity_curve = maximum_velocity_curve(path, limits, &segments, tips.as_ref(), &mut derivatives);
         let tips = tips.filter(|_| limits.tips.as_ref().is_some_and(TipRates::limit_acceleration));
-        let torques = torques.map_or(Ok(&[][..]), |torques| torques.over(&segments, &velocity_curve))?;
-        let (derivatives, strips, segments_of) = (&mut derivatives, &mut strips, &segments[..]);
-        let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips };
+        let torques = torques.map_or(Ok(vec![]), |torques| torques.over(&segments, &velocity_curve))?;
+        let (derivatives, strips, segments_of, torques) = (&mut derivatives, &mut strips, &segments[..], &torques[..]);
+        let kept = Strictness::Throughout;
+        let mut pass = Pass { path, limits, segments: segments_of, tips, torques, derivatives, strips, kept };
         let controllable = pass.backward(velocity_curve, end)?;
         let squared_speeds = pass.forward(&controllable, start)?;
         Ok(Self { segments, squared_speeds })
+    }
+
+    /// Computes about how long (s) each segment takes on the finest grid, without limits of tips. `torques` are those over these segments.
+    ///
+    /// # Errors
+    /// As [`fastest`](Self::fastest).
+    pub(super) fn spans_on_average(
+        path: &JointPath,
+        limits: &ConstantLimits,
+        segments: Vec<Segment>,
+        [start, end]: [Range; 2],
+        torques: &TorqueSegments<'_>,
+    ) -> Result<Vec<f64>> {
+        let mut derivatives = PathDerivatives::new(path.joints().len());
+        let mut strips = Strips::new(path.joints().len());
+        let velocity_curve = average_velocity_curve(path, limits, &segments, &mut derivatives);
+        let averages = torques.averages();
+        let torques: Vec<_> = averages.iter().collect();
+        let (derivatives, strips, segments_of, torques) = (&mut derivatives, &mut strips, &segments[..], &torques[..]);
+        let kept = Strictness::OnAverage;
+        let mut pass = Pass { path, limits, segments: segments_of, tips: None, torques, derivatives, strips, kept };
+        let controllable = pass.backward(velocity_curve, end)?;
+        let squared_speeds = pass.forward(&controllable, start)?;
+        Ok(Self { segments, squared_speeds }.spans().collect())
     }
 
     /// Duration of each segment (s): its length over its mean speed, since the speed is linear in time.
@@ -75,9 +99,10 @@ struct Pass<'a> {
     /// Tips whose acceleration is limited.
     tips: Option<TipSegments<'a>>,
     /// Torques by segment; empty without limits.
-    torques: &'a [Rc<SegmentTorques>],
+    torques: &'a [&'a TorqueBounds],
     derivatives: &'a mut PathDerivatives,
     strips: &'a mut Strips,
+    kept: Strictness,
 }
 
 impl Pass<'_> {
@@ -85,12 +110,12 @@ impl Pass<'_> {
     fn enter(&mut self, i: usize) -> Segment {
         let segment = self.segments[i];
         self.derivatives.fill(self.path, &segment);
-        self.strips.fill(self.derivatives, segment.length, self.limits);
+        self.strips.fill(self.derivatives, segment.length, self.limits, self.kept);
         if let Some(tips) = &self.tips {
             self.strips.add(tips, i);
         }
         if let Some(torques) = self.torques.get(i) {
-            self.strips.bound(&torques.bounds);
+            self.strips.bound(torques);
         }
         segment
     }

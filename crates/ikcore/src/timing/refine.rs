@@ -1,7 +1,7 @@
 //! Adaptive refinement of the grid.
 //!
 //! The profile keeps every limit over whole segments, which takes longer than the fastest motion does. What a segment loses by that falls with
-//! the square of its length: halving it once tells how much is left.
+//! the square of its length: halving it once tells how much is left. So does a motion that keeps the limits only on average.
 
 use super::grid::{MAX_GRIDPOINTS, Segment};
 use super::reachability::SpeedProfile;
@@ -13,16 +13,19 @@ const AIM: f64 = 0.6;
 /// Most halvings of a segment from one grid to the next.
 const MAX_HALVINGS: u32 = 3;
 
-/// Returns the fastest profile on a grid that starts with `segments` and is refined where that saves most time, until it loses less than this
-/// fraction of the duration.
+/// Returns the fastest profile on a grid that starts as that of `profile` and is refined where that saves most time, until it loses less than
+/// this fraction of the duration. `losses` is what the segments lose (s), where that is known.
 pub(super) fn refine(
-    segments: Vec<Segment>,
+    mut profile: SpeedProfile,
+    losses: Option<Vec<f64>>,
     tolerance: f64,
     mut fastest: impl FnMut(Vec<Segment>) -> Result<SpeedProfile>,
 ) -> Result<SpeedProfile> {
-    let mut halvings = vec![1; segments.len()];
-    let mut losses = vec![0.0; segments.len()];
-    let mut profile = fastest(segments)?;
+    let mut halvings = match &losses {
+        Some(losses) => for_loss(losses, AIM * tolerance * profile.duration()),
+        None => vec![1; profile.segments.len()],
+    };
+    let mut losses = losses.unwrap_or_else(|| vec![0.0; profile.segments.len()]);
     loop {
         let count: usize = halvings.iter().map(|times| 1 << times).sum();
         if count == halvings.len() || count >= MAX_GRIDPOINTS {

@@ -8,7 +8,17 @@ use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
 use super::derivatives::PathDerivatives;
 use super::tip_segments::TipSegments;
-use super::torque_segments::TorqueBounds;
+use super::torque_bounds::TorqueBounds;
+use crate::math::arithmetic::by_instructions;
+
+/// How strictly limits are kept over a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Strictness {
+    /// At every point.
+    Throughout,
+    /// On average: a motion that takes about as long as on the finest grid, but exceeds them somewhere.
+    OnAverage,
+}
 
 /// Strips, each given by its upper line. The lower line is parallel and has the negative offset.
 #[derive(Debug, Default)]
@@ -21,6 +31,60 @@ pub(super) struct Strips {
     pub largest_x: f64,
     /// The largest u from rest.
     pub launch: f64,
+}
+
+by_instructions! {
+    /// Turns the factors a and b of strips |a u + b x| <= c, row by row (n,), into offsets and slopes of their upper lines. Returns the bound
+    /// on x from strips that do not bound u, and the largest u from rest.
+    fn upper_lines(a: &mut [f64], b: &mut [f64], limits: &[f64]) -> [f64; 2] {
+        let n = limits.len();
+        let [least, largest] = sizes(a);
+        let mut largest_x = f64::INFINITY;
+        for (offsets, slopes) in a.chunks_exact_mut(n).zip(b.chunks_exact_mut(n)) {
+            // In wide registers, unless a strip hardly bounds u.
+            if least > NEGLIGIBLE_SLOPE * largest {
+                for j in 0..n {
+                    let a = offsets[j];
+                    offsets[j] = limits[j] / a.abs();
+                    slopes[j] /= a;
+                }
+                continue;
+            }
+            for ((offset, slope), c) in offsets.iter_mut().zip(slopes).zip(limits) {
+                let (a, b) = (*offset, *slope);
+                if a.abs() <= NEGLIGIBLE_SLOPE * largest {
+                    largest_x = largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
+                    (*offset, *slope) = (f64::INFINITY, 0.0);
+                } else {
+                    (*offset, *slope) = (c / a.abs(), b / a);
+                }
+            }
+        }
+        [largest_x, sizes(a)[0]]
+    }
+}
+
+/// Returns the smallest and the largest size of these numbers, side by side: one after the other each would wait for the one before.
+#[inline(always)]
+fn sizes(numbers: &[f64]) -> [f64; 2] {
+    const LANES: usize = 4;
+    let (mut least, mut largest) = ([f64::INFINITY; LANES], [0.0; LANES]);
+    let (groups, rest) = numbers.as_chunks::<LANES>();
+    for group in groups {
+        for k in 0..LANES {
+            let size = group[k].abs();
+            least[k] = if size < least[k] { size } else { least[k] };
+            largest[k] = if size > largest[k] { size } else { largest[k] };
+        }
+    }
+    for (k, number) in rest.iter().enumerate() {
+        (least[k], largest[k]) = (least[k].min(number.abs()), largest[k].max(number.abs()));
+    }
+    let [mut all_least, mut all_largest] = [least[0], largest[0]];
+    for k in 1..LANES {
+        (all_least, all_largest) = (all_least.min(least[k]), all_largest.max(largest[k]));
+    }
+    [all_least, all_largest]
 }
 
 impl Strips {
@@ -38,10 +102,16 @@ impl Strips {
     ///
     /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
     /// its three Bernstein coefficients bound it at every point, not only at grid points.
-    pub(super) fn fill(&mut self, derivatives: &PathDerivatives, length: f64, limits: &ConstantLimits) {
+    pub(super) fn fill(
+        &mut self,
+        derivatives: &PathDerivatives,
+        length: f64,
+        limits: &ConstantLimits,
+        kept: Strictness,
+    ) {
         let n = limits.acceleration.len();
-        self.offsets.truncate(3 * n);
-        self.slopes.truncate(3 * n);
+        self.offsets.resize(3 * n, 0.0);
+        self.slopes.resize(3 * n, 0.0);
         self.bounds.iter_mut().for_each(Vec::clear);
         let [d0, d1, d2] = derivatives.first.each_ref().map(|row| &row[..n]);
         let [e0, e1] = derivatives.second.each_ref().map(|row| &row[..n]);
@@ -51,20 +121,18 @@ impl Strips {
             (offsets[n + j], slopes[n + j]) = (d1[j] + length * e0[j], 0.5 * (e0[j] + e1[j]));
             (offsets[2 * n + j], slopes[2 * n + j]) = (d2[j] + 2.0 * length * e1[j], e1[j]);
         }
-        let largest = offsets.iter().fold(0.0_f64, |largest, a| largest.max(a.abs()));
-        (self.largest_x, self.launch) = (f64::INFINITY, f64::INFINITY);
-        for (of_end, slopes) in offsets.chunks_exact_mut(n).zip(slopes.chunks_exact_mut(n)) {
-            for ((offset, slope), c) in of_end.iter_mut().zip(slopes).zip(&limits.acceleration) {
-                let (a, b) = (*offset, *slope);
-                if a.abs() <= NEGLIGIBLE_SLOPE * largest {
-                    self.largest_x = self.largest_x.min(if b == 0.0 { f64::INFINITY } else { c / b.abs() });
-                    (*offset, *slope) = (f64::INFINITY, 0.0);
-                } else {
-                    (*offset, *slope) = (c / a.abs(), b / a);
-                    self.launch = self.launch.min(*offset);
+        let rows = match kept {
+            Strictness::Throughout => 3 * n,
+            Strictness::OnAverage => {
+                for row in [&mut *offsets, &mut *slopes] {
+                    (0..n).for_each(|j| row[j] = (row[j] + row[n + j] + row[2 * n + j]) / 3.0);
                 }
+                n
             }
-        }
+        };
+        self.offsets.truncate(rows);
+        self.slopes.truncate(rows);
+        [self.largest_x, self.launch] = upper_lines(&mut self.offsets, &mut self.slopes, &limits.acceleration);
     }
 
     /// Adds the strips of tips over a segment.
@@ -83,8 +151,9 @@ impl Strips {
     }
 
     /// Adds the bounds of joint torques.
-    pub(super) fn bound(&mut self, TorqueBounds { lines, largest_x }: &TorqueBounds) {
-        self.largest_x = self.largest_x.min(*largest_x);
+    pub(super) fn bound(&mut self, torques: &TorqueBounds) {
+        let lines = torques.lines();
+        self.largest_x = self.largest_x.min(torques.largest_x);
         self.launch = lines[0].iter().map(|line| line.offset).fold(self.launch, f64::min);
         self.bounds.iter_mut().zip(lines).for_each(|(all, more)| all.extend_from_slice(more));
     }

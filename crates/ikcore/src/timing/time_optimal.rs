@@ -87,7 +87,10 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
         None if limits.limit_jerk() => fastest(cut(path, SEGMENTS_FOR_JERK))?,
         None => {
             let tolerance = if limits.torques.is_some() { CONVERGED_WITH_TORQUES } else { CONVERGED };
-            refine(cut(path, FIRST_SEGMENTS), tolerance, fastest)?
+            let profile = fastest(cut(path, FIRST_SEGMENTS))?;
+            let losses = losses(path, limits, &profile, ends, torques.as_ref());
+            let fastest = |segments| SpeedProfile::fastest(path, limits, segments, ends, torques.as_mut());
+            refine(profile, losses, tolerance, fastest)?
         }
     };
     if !limits.limit_jerk() {
@@ -99,6 +102,22 @@ pub(crate) fn time(path: &JointPath, limits: &ConstantLimits, options: &TimingOp
         return Err(Error::Infeasible { problem });
     }
     jerk_limited::fastest(path, &profile, limits)
+}
+
+/// Returns about what each segment of a first grid loses (s) because it keeps limits at every point. With torque limits that saves a grid of
+/// halves; `None` without, or with limits of tips, whose means are not known.
+fn losses(
+    path: &JointPath,
+    limits: &ConstantLimits,
+    profile: &SpeedProfile,
+    ends: [Range; 2],
+    torques: Option<&TorqueSegments<'_>>,
+) -> Option<Vec<f64>> {
+    let torques = torques.filter(|_| limits.tips.is_none())?;
+    let segments = profile.segments.clone();
+    // Without an answer the grid is halved, which meets any lasting error again.
+    let spans = SpeedProfile::spans_on_average(path, limits, segments, ends, torques).ok()?;
+    Some(profile.spans().zip(spans).map(|(span, least)| (span - least).abs()).collect())
 }
 
 /// The fastest motion along `paths`, each from rest to rest, one after the other.

@@ -1,21 +1,19 @@
 //! The limits of joint torques over the segments of a grid, in the plane of x = (ds/dt)^2 and u = d2s/dt2.
 //!
-//! Along a path the torque of a joint is a(s) u + b(s) x + g(s), where x grows by 2 u s. Over a segment a, b and g are parabolas up to rests; so the
-//! torque is a cubic, and bounds on its four Bernstein coefficients bound it at every point.
+//! A grid that refines another uses what is known of it: the terms at its points, bounds that are none, and rests.
 
-use std::rc::Rc;
+use smallvec::SmallVec;
 
-use super::bounding_line::{Line, NEGLIGIBLE_SLOPE};
 use super::constant_limits::ConstantLimits;
+use super::derivatives::PathDerivatives;
 use super::grid::Segment;
 use super::joint_path::JointPath;
-use crate::constraint::{
-    ALL_FACTORS, BendScratch, Drag, JointTorques, Rest, TIGHT, TooHeavy, TorquePoint, TorqueTerms, control_points,
-};
+use super::torque_bounds::{HalfPlane, KeptTorque, TorqueBounds, largest_terms};
+use super::torque_nodes::{Node, NodePlace, TorqueNodes};
+use crate::constraint::{ALL_FACTORS, BendScratch, Drag, Friction, JointTorques, Rest, TIGHT, TooHeavy};
 use crate::error::{Error, Result};
 use crate::interrupt::checkpoint_at;
 use crate::math::majorant::Majorant;
-use crate::trajectory::{derivative_bounds, polynomial};
 use crate::wording::number;
 
 /// On a grid that stays as it is, a segment is halved until the rests are at most this part of a limit. On one that is refined they fall with it.
@@ -25,26 +23,17 @@ const NEGLIGIBLE: f64 = 3e-4;
 const DEEP: usize = 5;
 const DEEPEST: usize = 12;
 
+/// Segments that share their rests.
+const RUN: usize = 4;
+
 /// Bounds hold for u and x beyond what the segment allows by this factor, so that they serve its parts too.
 const ROOM: f64 = 1.25;
 
-/// A half-plane a u + b x <= c, with positive c.
-type HalfPlane = [f64; 3];
-
-/// Bounds on u over a segment where x grows by 2 u from its start on.
-#[derive(Debug)]
-pub(super) struct TorqueBounds {
-    /// From above and from below.
-    pub lines: [Vec<Line>; 2],
-    /// The bound on x from half-planes that do not bound u.
-    pub largest_x: f64,
-}
-
 /// Torques over one segment.
 #[derive(Debug)]
-pub(super) struct SegmentTorques {
+struct SegmentTorques {
     segment: Segment,
-    pub bounds: TorqueBounds,
+    bounds: TorqueBounds,
     /// Largest u and x for which the bounds hold.
     most: [f64; 2],
     /// At the start, in the middle and at the end.
@@ -52,9 +41,6 @@ pub(super) struct SegmentTorques {
     /// Where the rests over a part of unit length are.
     rests: RestsAt,
 }
-
-/// A point whose terms are known: an index.
-type Node = usize;
 
 /// Index of the first joint's rests.
 type RestsAt = usize;
@@ -67,14 +53,24 @@ pub(super) struct TorqueSegments<'a> {
     torques: &'a JointTorques,
     /// The rests that are not worth halving a segment for, as a part of a limit.
     negligible: f64,
-    point: TorquePoint,
+    limited: Vec<LimitedJoint>,
+    nodes: TorqueNodes<'a>,
+    derivatives: PathDerivatives,
     bend: BendScratch,
-    /// Terms at all points so far.
-    terms: Vec<TorqueTerms>,
-    /// Rests over parts of unit length, by joint; those of all segments so far, one after the other.
+    /// Rests over parts of unit length, by joint; those of all runs of segments so far, one after the other.
     rests: Vec<Rest>,
-    /// Those of the last grid; one without bounds may stand for several segments.
-    last: Vec<Rc<SegmentTorques>>,
+    /// Torques over all segments so far.
+    known: Vec<SegmentTorques>,
+    /// Those of the last grid, by index; one without bounds may stand for several segments.
+    last: Vec<usize>,
+}
+
+/// A joint with a limit.
+#[derive(Debug, Clone, Copy)]
+struct LimitedJoint {
+    joint: usize,
+    limit: f64,
+    friction: Friction,
 }
 
 /// A part of a segment.
@@ -89,7 +85,7 @@ struct Part {
 impl SegmentTorques {
     /// Whether the segment ends before the middle of `other`.
     fn is_before(&self, other: &Segment) -> bool {
-        let Segment { piece, from, length } = self.segment;
+        let Segment { piece, from, length, .. } = self.segment;
         (piece, from + length) < (other.piece, other.from + 0.5 * other.length)
     }
 
@@ -100,10 +96,9 @@ impl SegmentTorques {
     }
 
     /// The node at a place in a piece, if there is one.
-    fn node(&self, piece: usize, s: f64) -> Option<Node> {
+    fn node(&self, (piece, s): NodePlace) -> Option<Node> {
         let Segment { from, length, .. } = self.segment;
-        let places = [from, from + 0.5 * length, from + length];
-        let k = places.iter().position(|place| *place == s && piece == self.segment.piece)?;
+        let k = [0.0, 0.5, 1.0].iter().position(|part| from + part * length == s && piece == self.segment.piece)?;
         Some(self.nodes[k])
     }
 }
@@ -113,61 +108,123 @@ impl<'a> TorqueSegments<'a> {
     pub(super) fn new(path: &'a JointPath, limits: &'a ConstantLimits, is_refined: bool) -> Option<Self> {
         let torques = limits.torques.as_ref()?;
         let negligible = if is_refined { f64::INFINITY } else { NEGLIGIBLE };
-        let (point, bend) = (torques.point(), torques.bend_scratch());
-        Some(Self { path, limits, torques, negligible, point, bend, terms: vec![], rests: vec![], last: vec![] })
+        let limits_of = torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite());
+        let limited =
+            limits_of.map(|(joint, &limit)| LimitedJoint { joint, limit, friction: torques.friction(joint) }).collect();
+        let (nodes, bend) = (TorqueNodes::new(path, torques), torques.bend_scratch());
+        let derivatives = PathDerivatives::new(torques.dof());
+        let (rests, known, last) = (vec![], vec![], vec![]);
+        Some(Self { path, limits, torques, negligible, limited, nodes, derivatives, bend, rests, known, last })
     }
 
-    /// Returns the torques over these segments, at whose ends x is at most that of `curve`.
+    /// Returns the bounds over these segments, at whose ends x is at most that of `curve`.
     ///
     /// # Errors
     /// [`Error::Infeasible`] where a joint cannot hold the arm; [`Error::Interrupted`].
-    pub(super) fn over(&mut self, segments: &[Segment], curve: &[f64]) -> Result<&[Rc<SegmentTorques>]> {
+    pub(super) fn over(&mut self, segments: &[Segment], curve: &[f64]) -> Result<Vec<&TorqueBounds>> {
+        let first_new = self.known.len();
+        self.enter(segments, curve)?;
+        self.find_nodes()?;
+        let mut half_planes = vec![];
+        for index in first_new..self.known.len() {
+            checkpoint_at(index)?;
+            let SegmentTorques { segment, most, nodes, rests, .. } = self.known[index];
+            let whole = Part { ends: [0.0, segment.length], nodes, halvings: 0 };
+            half_planes.clear();
+            self.push((&segment, most, rests), whole, &mut half_planes)?;
+            self.known[index].bounds = TorqueBounds::new(&half_planes);
+        }
+        Ok(self.last.iter().map(|index| &self.known[*index].bounds).collect())
+    }
+
+    /// Takes these segments as the last grid: known ones where they serve, and new ones, without bounds so far.
+    fn enter(&mut self, segments: &[Segment], curve: &[f64]) -> Result<()> {
         let coarse = std::mem::take(&mut self.last);
-        let mut all: Vec<Rc<SegmentTorques>> = Vec::with_capacity(segments.len());
-        let mut k = 0;
+        self.known.reserve(segments.len());
+        self.last.reserve(segments.len());
+        let (mut k, mut run) = (0, None);
         for (i, (segment, curve)) in segments.iter().zip(curve.windows(2)).enumerate() {
             checkpoint_at(i)?;
-            while coarse.get(k).is_some_and(|coarse| coarse.is_before(segment)) {
+            while coarse.get(k).is_some_and(|coarse| self.known[*coarse].is_before(segment)) {
                 k += 1;
             }
             let largest_x = curve[0].max(curve[1]);
             let most = [self.largest_u(segment, largest_x), largest_x];
-            all.push(match coarse.get(k) {
-                Some(coarse) if coarse.serve(segment, most) => Rc::clone(coarse),
-                coarse => Rc::new(self.of_segment(segment, most, [coarse, all.last()])?),
-            });
+            let coarse = coarse.get(k).copied();
+            if let Some(known) = coarse.filter(|coarse| self.known[*coarse].serve(segment, most)) {
+                self.last.push(known);
+                continue;
+            }
+            let rests = match (coarse, run) {
+                (Some(coarse), _) => self.known[coarse].rests,
+                (None, Some((rests, end))) if i < end => rests,
+                (None, _) => {
+                    let end = segments.len().min(i + RUN);
+                    let rests = self.add_rests(&segments[i..end]);
+                    run = Some((rests, end));
+                    rests
+                }
+            };
+            let nodes = self.nodes_of(segment, [coarse, self.last.last().copied()]);
+            let most = most.map(|most| ROOM * most);
+            self.last.push(self.known.len());
+            self.known.push(SegmentTorques { segment: *segment, bounds: TorqueBounds::NONE, most, nodes, rests });
         }
-        self.last = all;
-        Ok(&self.last)
+        Ok(())
     }
 
-    /// The torques over a segment where u and x are at most `most`, by what is known of one that contains it and of the one before.
-    fn of_segment(
-        &mut self,
-        segment: &Segment,
-        most: [f64; 2],
-        known: [Option<&Rc<SegmentTorques>>; 2],
-    ) -> Result<SegmentTorques> {
-        let mut node = |at: f64| {
-            let same = known.iter().flatten().find_map(|known| known.node(segment.piece, segment.from + at));
-            same.map_or_else(|| self.node_at(segment, at), Ok)
-        };
-        let nodes = [node(0.0)?, node(0.5 * segment.length)?, node(segment.length)?];
-        let rests = known[0].map_or_else(|| self.add_rests(segment), |coarse| coarse.rests);
-        let most = most.map(|most| ROOM * most);
-        let whole = Part { ends: [0.0, segment.length], nodes, halvings: 0 };
+    /// Returns bounds over the segments of the last grid that keep torques on average.
+    pub(super) fn averages(&self) -> Vec<TorqueBounds> {
+        self.last.iter().map(|index| self.average(&self.known[*index])).collect()
+    }
+
+    fn average(&self, SegmentTorques { segment, bounds, most, nodes, .. }: &SegmentTorques) -> TorqueBounds {
         let mut half_planes = vec![];
-        self.push((segment, most, rests), whole, &mut half_planes)?;
-        Ok(SegmentTorques { segment: *segment, bounds: TorqueBounds::new(half_planes), most, nodes, rests })
+        if !bounds.are_none() {
+            let terms = nodes.map(|node| self.nodes.terms(node));
+            let whole = Part { ends: [0.0, segment.length], nodes: *nodes, halvings: 0 };
+            for limited @ &LimitedJoint { joint, limit, .. } in &self.limited {
+                let largest = largest_terms(terms, joint);
+                let drags = self.drags(segment, whole, (limited, limit - largest[0]), most[1]);
+                let kept = KeptTorque { ends: whole.ends, limit, rest: [0.0; 3], drags };
+                if kept.can_bind(largest, *most) {
+                    kept.push_average(terms, joint, &mut half_planes);
+                }
+            }
+        }
+        TorqueBounds::new(&half_planes)
+    }
+
+    /// Returns the nodes of a segment: known ones of that which contains it and of the one before, and new ones.
+    fn nodes_of(&mut self, segment: &Segment, [coarse, before]: [Option<usize>; 2]) -> [Node; 3] {
+        let [coarse, before] = [coarse, before].map(|index| index.map(|index| &self.known[index]));
+        let joined = before.filter(|before| segment.from == 0.0 && before.segment.piece + 1 == segment.piece);
+        let start =
+            joined.filter(|before| self.path.continues_after(before.segment.piece)).map(|before| before.nodes[2]);
+        [0.0, 0.5, 1.0].map(|part| {
+            let place = (segment.piece, segment.from + part * segment.length);
+            let known = [coarse, before].into_iter().flatten().find_map(|known| known.node(place));
+            let known = known.or(start.filter(|_| part == 0.0));
+            known.unwrap_or_else(|| self.nodes.ask(place))
+        })
+    }
+
+    fn find_nodes(&mut self) -> Result<()> {
+        self.nodes.find().map_err(|(place, found)| self.too_heavy(place, Some(found)))
     }
 
     /// A bound of u by the acceleration limits at the start of a segment: |q' u + q'' x| is at most the acceleration.
     fn largest_u(&self, segment: &Segment, largest_x: f64) -> f64 {
+        let n = self.torques.dof();
+        let [_, c1, c2, c3] = self.path.powers(segment.piece).map(|power| &power[..n]);
+        let (from, acceleration) = (segment.from, &self.limits.acceleration[..n]);
         let of_joint = |joint: usize| {
-            let [_, first, second] = self.path.joint_at(segment.piece, segment.from, joint);
-            (self.limits.acceleration[joint] + second.abs() * largest_x) / first.abs()
+            let first = c1[joint] + from * (2.0 * c2[joint] + from * 3.0 * c3[joint]);
+            let second = 2.0 * c2[joint] + 6.0 * from * c3[joint];
+            (acceleration[joint] + second.abs() * largest_x) / first.abs()
         };
-        (0..self.torques.dof()).map(of_joint).filter(|u| !u.is_nan()).fold(f64::INFINITY, f64::min)
+        // The minimum passes over what is not a number.
+        (0..n).map(of_joint).fold(f64::INFINITY, f64::min)
     }
 
     /// Adds the half-planes in which the torques over a part of a segment are kept while u and x are at most `most`.
@@ -181,184 +238,101 @@ impl<'a> TorqueSegments<'a> {
         // Rests grow with the third power of the length.
         let cube = (to - from).powi(3);
         let rest_of = |joint: usize| self.rests[rests + joint].map(|rest| rest * cube);
-        let terms = nodes.map(|node| &self.terms[node]);
+        let terms = nodes.map(|node| self.nodes.terms(node));
         let (mut holds, mut is_tight) = (true, true);
-        for (joint, limit) in self.limited() {
-            let [of_hold, of_square, of_change] = rest_of(joint);
-            let largest = largest(terms.map(|terms| terms.hold[joint])) + of_hold;
-            holds &= largest + self.torques.friction(joint).dry < limit * (1.0 - 2.0 * TIGHT);
+        let mut near = SmallVec::<[(usize, KeptTorque); 2]>::new();
+        for limited @ &LimitedJoint { joint, limit, friction } in &self.limited {
+            let rest = rest_of(joint);
+            let [of_hold, of_square, of_change] = rest;
+            let largest = largest_terms(terms, joint);
+            holds &= largest[0] + of_hold + friction.dry < limit * (1.0 - 2.0 * TIGHT);
             is_tight &= !(of_change * most[0] + of_square * most[1] + of_hold > self.negligible * limit);
+            let drags = self.drags(segment, part, (limited, limit - of_hold - largest[0]), most[1]);
+            let kept = KeptTorque { ends: [from, to], limit: limit * (1.0 - TIGHT), rest, drags };
+            // Few joints come near their limits.
+            if kept.can_bind(largest, most) {
+                near.push((joint, kept));
+            }
         }
         if holds && (is_tight || halvings >= DEEP) {
-            for (joint, limit) in self.limited() {
-                let kept = KeptTorque {
-                    ends: [from, to],
-                    limit: limit * (1.0 - TIGHT),
-                    rest: rest_of(joint),
-                    drags: self.drags(segment, part, (joint, limit - rest_of(joint)[0]), most[1]),
-                };
-                kept.push(terms, joint, most, half_planes);
-            }
+            near.iter().for_each(|(joint, kept)| kept.push(terms, *joint, most, half_planes));
             return Ok(());
         }
         if halvings == DEEPEST {
-            return Err(self.too_heavy(segment, from, None));
+            return Err(self.too_heavy((segment.piece, segment.from + from), None));
         }
         let halvings = halvings + 1;
         let half = 0.5 * (to - from);
-        for (ends, [start, end]) in
-            [([from, from + half], [nodes[0], nodes[1]]), ([from + half, to], [nodes[1], nodes[2]])]
-        {
-            let middle = self.node_at(segment, ends[0] + 0.5 * half)?;
+        let middles = [0.5, 1.5].map(|halves| self.nodes.ask((segment.piece, segment.from + from + halves * half)));
+        self.find_nodes()?;
+        for (ends, [start, middle, end]) in [
+            ([from, from + half], [nodes[0], middles[0], nodes[1]]),
+            ([from + half, to], [nodes[1], middles[1], nodes[2]]),
+        ] {
             self.push((segment, most, rests), Part { ends, nodes: [start, middle, end], halvings }, half_planes)?;
         }
         Ok(())
     }
 
-    /// Joints with a limit, and their limits.
-    fn limited(&self) -> impl Iterator<Item = (usize, f64)> + use<'a> {
-        self.torques.limits().iter().copied().enumerate().filter(|(_, limit)| limit.is_finite())
-    }
-
-    /// A new node at a point of a segment.
-    fn node_at(&mut self, segment: &Segment, at: f64) -> Result<Node> {
-        let Self { path, torques, point, .. } = self;
-        path.write(segment.piece, segment.from + at, [&mut point.q, &mut point.first, &mut point.second]);
-        let node = self.terms.len();
-        self.terms.push(torques.terms());
-        torques.write_terms(point, &mut self.terms[node]);
-        match torques.beyond(&self.terms[node].hold) {
-            None => Ok(node),
-            Some(found) => Err(self.too_heavy(segment, at, Some(found))),
+    /// Adds the rests over parts of unit length of these segments.
+    fn add_rests(&mut self, segments: &[Segment]) -> RestsAt {
+        let Self { path, torques, derivatives, bend, rests, .. } = self;
+        let n = torques.dof();
+        // Bounds of the positions, and of the Taylor coefficients of their derivatives.
+        let mut bounds = vec![[0.0_f64; 4]; n];
+        for segment in segments {
+            derivatives.fill(path, segment);
+            let ([d0, d1, d2], [e0, e1]) = (&derivatives.first, &derivatives.second);
+            let [c0, c1, c2, c3] = path.powers(segment.piece);
+            for (joint, [q, first, second, third]) in bounds.iter_mut().enumerate() {
+                let largest = d0[joint].abs().max(d1[joint].abs()).max(d2[joint].abs());
+                let start =
+                    c0[joint] + segment.from * (c1[joint] + segment.from * (c2[joint] + segment.from * c3[joint]));
+                *q = q.max(start.abs() + segment.length * largest);
+                *first = first.max(largest);
+                *second = second.max(e0[joint].abs()).max(e1[joint].abs());
+                *third = third.max(3.0 * c3[joint].abs());
+            }
         }
-    }
-
-    /// Adds the rests over a segment, divided by the third power of its length.
-    fn add_rests(&mut self, segment: &Segment) -> RestsAt {
-        let Self { path, torques, bend, rests, .. } = self;
-        let half = 0.5 * segment.length;
-        // The polynomial of a joint on [-1, 1].
-        let cubic = |joint: usize| {
-            let [c0, c1, c2] = path.joint_at(segment.piece, segment.from + half, joint);
-            [c0, half * c1, 0.5 * half * half * c2, half.powi(3) * path.powers(segment.piece)[3][joint]]
-        };
-        let rates = |joint: usize| Majorant::of(derivative_bounds::<3>(&polynomial(cubic(joint))));
-        let farthest = |joint: usize| cubic(joint).iter().map(|c| c.abs()).sum();
         let first = rests.len();
-        rests.resize(first + torques.dof(), [0.0; 3]);
+        rests.resize(first + n, [0.0; 3]);
         let rests = &mut rests[first..];
-        torques.rests::<ALL_FACTORS>(rates, farthest, bend, rests);
-        let by_length = segment.length.powi(-3);
-        // Derivatives by s, not by x.
-        rests.iter_mut().for_each(|rest| {
-            let [g, b, a] = *rest;
-            *rest = [g, b / (half * half), a / half].map(|rest| rest * by_length);
-        });
+        let rates = |joint: usize| Majorant::of([bounds[joint][1], bounds[joint][2], bounds[joint][3]]);
+        torques.rests::<ALL_FACTORS>(rates, |joint| bounds[joint][0], bend, rests);
+        // Over \[-1, 1\], which is twice as long.
+        rests.iter_mut().for_each(|rest| *rest = rest.map(|rest| 0.125 * rest));
         first
     }
 
     /// Friction of a joint over a part of a segment against positive and against negative torques, where (ds/dt)^2 is at most `square` and
-    /// the torque that holds it up may be as large as `limit`.
-    fn drags(&self, segment: &Segment, part: Part, (joint, limit): (usize, f64), square: f64) -> [Drag; 2] {
-        let friction = self.torques.friction(joint);
+    /// the torque that holds it up leaves this `room`.
+    #[inline]
+    fn drags(&self, segment: &Segment, part: Part, (of, room): (&LimitedJoint, f64), square: f64) -> [Drag; 2] {
+        let friction = of.friction;
         if friction.damping == 0.0 {
-            return [friction.drag(0.0, 0.0, 0.0); 2];
+            return [Drag { at_rest: friction.dry, per_square: 0.0 }; 2];
         }
+        self.viscous_drags(segment, part, (of, room), square)
+    }
+
+    /// [`drags`](Self::drags) of a joint with viscous friction.
+    fn viscous_drags(&self, segment: &Segment, part: Part, (of, room): (&LimitedJoint, f64), square: f64) -> [Drag; 2] {
+        let LimitedJoint { joint, friction, .. } = *of;
         let half = 0.5 * (part.ends[1] - part.ends[0]);
         let [_, first, second] = self.path.joint_at(segment.piece, segment.from + part.ends[0] + half, joint);
         let third = 6.0 * self.path.powers(segment.piece)[3][joint];
         let most = (half * second).abs() + (0.5 * half * half * third).abs();
-        let room = limit - largest(part.nodes.map(|node| self.terms[node].hold[joint]));
         [first + most, most - first].map(|rate| friction.drag(rate, room, square))
     }
 
-    fn too_heavy(&self, segment: &Segment, at: f64, found: Option<TooHeavy>) -> Error {
-        let s = number(self.path.breaks()[segment.piece] + segment.from + at);
+    fn too_heavy(&self, (piece, from): NodePlace, found: Option<TooHeavy>) -> Error {
+        let s = number(self.path.breaks()[piece] + from);
         let problem = match found {
             Some(found) => self.limits.heavy_in_words(found),
             None => "a joint can hardly hold the arm, or not move it against its friction".into(),
         };
         Error::Infeasible { problem: format!("at s = {s} of the path {problem}").into() }
     }
-}
-
-impl TorqueBounds {
-    /// Bounds inside these half-planes.
-    fn new(half_planes: Vec<HalfPlane>) -> Self {
-        let steepest = half_planes.iter().fold(0.0_f64, |largest, [a, ..]| largest.max(a.abs()));
-        let mut bounds = Self { lines: [vec![], vec![]], largest_x: f64::INFINITY };
-        for [a, b, c] in half_planes {
-            if a.abs() <= NEGLIGIBLE_SLOPE * steepest {
-                bounds.largest_x = bounds.largest_x.min(if b > 0.0 { c / b } else { f64::INFINITY });
-            } else {
-                bounds.lines[usize::from(a < 0.0)].push(Line { offset: c / a, slope: b / a });
-            }
-        }
-        bounds
-    }
-
-    fn are_none(&self) -> bool {
-        self.largest_x == f64::INFINITY && self.lines.iter().all(Vec::is_empty)
-    }
-}
-
-/// The limit of a joint's torque over a part of a segment.
-struct KeptTorque {
-    ends: [f64; 2],
-    limit: f64,
-    rest: Rest,
-    /// Friction against positive and against negative torques.
-    drags: [Drag; 2],
-}
-
-impl KeptTorque {
-    /// Adds the half-planes in which it is kept, but for those that hold for all u and x up to `most`.
-    fn push(&self, nodes: [&TorqueTerms; 3], joint: usize, most: [f64; 2], half_planes: &mut Vec<HalfPlane>) {
-        let Self { ends: [from, to], limit, rest: [rest_g, rest_b, rest_a], drags } = *self;
-        // The most that it can be, quickly: few joints come near their limit.
-        let friction = drags.map(|drag| drag.at_rest + drag.per_square * most[1]);
-        let of_square = largest(nodes.map(|terms| terms.of_square[joint])) + rest_b;
-        let of_change = largest(nodes.map(|terms| terms.of_change[joint])) + rest_a;
-        let hold = largest(nodes.map(|terms| terms.hold[joint])) + rest_g;
-        let viscous = drags.map(|drag| 2.0 * to * drag.per_square * most[0]);
-        let inertial = of_change * most[0] + of_square * (most[1] + 2.0 * to * most[0]);
-        if inertial + hold + friction[0].max(friction[1]) + viscous[0].max(viscous[1]) <= limit {
-            return;
-        }
-        let a = control_points(nodes.map(|terms| terms.of_change[joint]));
-        let b = control_points(nodes.map(|terms| terms.of_square[joint]));
-        let g = control_points(nodes.map(|terms| terms.hold[joint]));
-        // x(s) = x + 2 u s, and s times a parabola is a cubic.
-        let (a, b, g, slope) = (raised(a), raised(b), raised(g), times_parameter(b, [from, to]));
-        for i in 0..4 {
-            let (a, b, g) = (a[i] + 2.0 * slope[i], b[i], g[i]);
-            for (side, drag) in [1.0, -1.0].into_iter().zip(drags) {
-                let c = limit - side * g - rest_g - drag.at_rest;
-                // Friction counts (ds/dt)^2 = x + 2 u s as x and as u.
-                let rest_a = rest_a + 2.0 * to * (rest_b + drag.per_square);
-                let b = side * b + rest_b + drag.per_square;
-                let both = [side * a + rest_a, side * a - rest_a];
-                let binds = |a: &f64| !(a.abs() * most[0] + b.max(0.0) * most[1] <= c);
-                half_planes.extend(both.into_iter().filter(binds).map(|a| [a, b, c]));
-            }
-        }
-    }
-}
-
-/// The largest size of the parabola with these values at the start, in the middle and at the end.
-fn largest(values: [f64; 3]) -> f64 {
-    let [start, middle, end] = control_points(values).map(f64::abs);
-    start.max(middle).max(end)
-}
-
-/// The Bernstein coefficients of a parabola as those of a cubic.
-fn raised([start, middle, end]: [f64; 3]) -> [f64; 4] {
-    [start, (start + 2.0 * middle) / 3.0, (2.0 * middle + end) / 3.0, end]
-}
-
-/// The Bernstein coefficients of a parabola times the parameter, from one value to another.
-fn times_parameter([start, middle, end]: [f64; 3], [from, to]: [f64; 2]) -> [f64; 4] {
-    [from * start, (2.0 * from * middle + to * start) / 3.0, (from * end + 2.0 * to * middle) / 3.0, to * end]
 }
 
 #[cfg(test)]
@@ -422,6 +396,24 @@ mod tests {
             }
         }
         largest
+    }
+
+    #[test]
+    fn a_motion_takes_hardly_longer_than_on_a_fine_grid() {
+        let robot = heavy();
+        let mut rng = rng::stream(8, 0);
+        let limits = limits(&robot, &MOTORS.map(|torque| 1.5 * torque), None);
+        let mut timed = 0;
+        for _ in 0..12 {
+            let path = path(&robot, &mut rng);
+            let Ok(motion) = time_optimal(&path, &limits, &TimingOptions::default()) else { continue };
+            let fine = TimingOptions { gridpoints: Some(20_000), ..TimingOptions::default() };
+            let least = time_optimal(&path, &limits, &fine).unwrap().duration();
+            let ratio = motion.duration() / least;
+            assert!((1.0 - 1e-9..1.003).contains(&ratio), "{ratio}");
+            timed += 1;
+        }
+        assert!(timed > 4, "{timed}");
     }
 
     #[test]

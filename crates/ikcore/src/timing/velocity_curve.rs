@@ -45,6 +45,34 @@ pub(super) fn maximum_velocity_curve(
     curve
 }
 
+/// Returns bounds on x at the ends of all segments such that a motion within them, with x linear in between, is on average as fast as the
+/// joints' velocity limits allow.
+pub(super) fn average_velocity_curve(
+    path: &JointPath,
+    limits: &ConstantLimits,
+    segments: &[Segment],
+    derivatives: &mut PathDerivatives,
+) -> Vec<f64> {
+    let mut curve = at_grid_points(path, limits, segments, derivatives);
+    tame_poles(&mut curve);
+    let (mut factor_before, mut left) = (None, curve[0]);
+    for (i, segment) in segments.iter().enumerate() {
+        derivatives.fill(path, segment);
+        let right = curve[i + 1];
+        let [start, middle, end] = derivatives.first.each_ref();
+        let slopes =
+            || start.iter().zip(middle).zip(end).map(|((start, middle), end)| 0.25 * (start + 2.0 * middle + end));
+        let bound = bound(path, limits, segment.piece, slopes());
+        // The mean by Simpson's rule over that of the chord.
+        let (sum, middle) = (left + right, bound.min(growth(left).min(growth(right))));
+        let factor = if sum == 0.0 { 1.0 } else { (sum + 4.0 * middle) / (3.0 * sum) };
+        curve[i] = left * 0.5 * (factor + factor_before.unwrap_or(factor));
+        (left, factor_before) = (right, Some(factor));
+    }
+    curve[segments.len()] = left * factor_before.unwrap_or(1.0);
+    curve
+}
+
 /// Returns the minimum over the joints of (v / q')^2, and of the squared path speeds asked for; zero at corners.
 fn at_grid_points(
     path: &JointPath,
@@ -53,23 +81,23 @@ fn at_grid_points(
     derivatives: &mut PathDerivatives,
 ) -> Vec<f64> {
     let mut curve = vec![UNLIMITED; segments.len() + 1];
-    let bound = |piece: usize, slope: &[f64]| {
-        let ratios = slope
-            .iter()
-            .zip(&limits.velocity)
-            .map(|(slope, limit)| if *slope == 0.0 { UNLIMITED } else { limit / slope });
-        let asked = path.largest_speed(piece);
-        ratios.chain([asked]).map(|speed| speed * speed).fold(UNLIMITED, f64::min)
-    };
     for (i, segment) in segments.iter().enumerate() {
         derivatives.fill(path, segment);
-        curve[i] = bound(segment.piece, &derivatives.first[0]).min(curve[i]);
-        curve[i + 1] = bound(segment.piece, &derivatives.first[2]);
-        if segment.piece > 0 && segment.from == 0.0 && path.has_corner_after(segment.piece - 1) {
+        curve[i] = bound(path, limits, segment.piece, derivatives.first[0].iter().copied()).min(curve[i]);
+        curve[i + 1] = bound(path, limits, segment.piece, derivatives.first[2].iter().copied());
+        if segment.from == 0.0 && segment.is_after_corner {
             curve[i] = 0.0;
         }
     }
     curve
+}
+
+/// Returns the bound on x where the joints have these slopes.
+fn bound(path: &JointPath, limits: &ConstantLimits, piece: usize, slopes: impl Iterator<Item = f64>) -> f64 {
+    let ratios =
+        slopes.zip(&limits.velocity).map(|(slope, limit)| if slope == 0.0 { UNLIMITED } else { limit / slope });
+    let asked = path.largest_speed(piece);
+    ratios.chain([asked]).map(|speed| speed * speed).fold(UNLIMITED, f64::min)
 }
 
 fn tame_poles(curve: &mut [f64]) {
