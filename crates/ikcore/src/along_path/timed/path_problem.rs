@@ -25,6 +25,9 @@ const ACCURACIES: u32 = 5;
 /// The part of the accuracy that a rounded corner uses; the rest is for the spline along it.
 const ROUNDING_SHARE: f64 = 0.8;
 
+/// An alternative at corners that takes longer than another by this factor is not tried on further motions.
+const MUCH_SLOWER: f64 = 1.05;
+
 /// A path with checked options.
 pub(crate) struct PathProblem<'a> {
     /// The robot, with the position limits to keep.
@@ -65,6 +68,14 @@ impl RoundedPath {
         let narrower = (1..ACCURACIES).map(|halvings| (widest - f64::from(halvings)).exp2());
         std::iter::once(accuracy).chain([widest.exp2()]).chain(narrower).map_while(of).collect()
     }
+}
+
+/// Alternatives at the corners of a path that took much longer than others on an earlier motion along it.
+#[derive(Debug, Default)]
+pub(super) struct SlowCorners {
+    stopped: bool,
+    /// The number of the rounded path at which the search ended; narrower ones are slower still.
+    rounded: Option<usize>,
 }
 
 /// A path that the tip follows, as joint motion.
@@ -114,6 +125,20 @@ impl<'a> PathProblem<'a> {
         accuracy: f64,
         may_round: bool,
     ) -> Result<(Interpolation<'a>, JointWaypoints, f64)> {
+        self.quick_corners_of(nominal, accuracy, may_round, &mut SlowCorners::default())
+    }
+
+    /// [`corners_of`](Self::corners_of) without the alternatives that were slow on earlier motions along the path.
+    ///
+    /// # Errors
+    /// As [`corners_of`](Self::corners_of).
+    pub(super) fn quick_corners_of(
+        &'a self,
+        nominal: &JointWaypoints,
+        accuracy: f64,
+        may_round: bool,
+        slow: &mut SlowCorners,
+    ) -> Result<(Interpolation<'a>, JointWaypoints, f64)> {
         let Self { robot, keeps, .. } = self;
         let on = |tip_path: &'a TipPath, corners: Corners, accuracy: f64| Interpolation {
             robot,
@@ -132,20 +157,31 @@ impl<'a> PathProblem<'a> {
             }
             Ok(duration)
         };
-        let mut of_wider = f64::INFINITY;
+        let (mut of_wider, mut of_stopped, mut ended) = (f64::INFINITY, 0.0, None);
         for corners in Corners::on(self.tip_path) {
-            of_wider = of_wider.min(timed(on(self.tip_path, *corners, accuracy), nominal.clone())?);
+            let stops = *corners == Corners::Stopped;
+            if stops && slow.stopped {
+                continue;
+            }
+            let duration = timed(on(self.tip_path, *corners, accuracy), nominal.clone())?;
+            of_stopped = if stops { duration } else { of_stopped };
+            of_wider = of_wider.min(duration);
         }
-        for rounded in self.rounded.iter().filter(|rounded| may_round && rounded.off < accuracy) {
+        let tried = &self.rounded[..slow.rounded.unwrap_or(self.rounded.len())];
+        for (number, rounded) in tried.iter().enumerate().filter(|(_, it)| may_round && it.off < accuracy) {
             let interpolation = on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off);
             let Some(start) = interpolation.moved(nominal.clone()) else { continue };
             let duration = timed(interpolation, start)?;
             // The narrower, the slower: what is no quicker than before ends the search.
             if duration > of_wider {
+                ended = Some((number, duration));
                 break;
             }
             of_wider = duration;
         }
+        let least = quickest.as_ref().map_or(f64::INFINITY, |(least, ..)| MUCH_SLOWER * least);
+        slow.stopped |= of_stopped > least;
+        slow.rounded = ended.filter(|(_, duration)| *duration > least).map(|(number, _)| number).or(slow.rounded);
         let stopping = || (on(self.tip_path, Corners::Stopped, accuracy), nominal.clone(), f64::INFINITY);
         Ok(quickest.map_or_else(stopping, |(duration, interpolation, waypoints)| (interpolation, waypoints, duration)))
     }
@@ -158,6 +194,16 @@ impl<'a> PathProblem<'a> {
             return Ok(roughly);
         }
         rough_duration(&interpolation.stretches(waypoints)?, &self.limits)
+    }
+
+    /// Duration (s) of a motion without jerk limits on a grid half as fine as that of its rough duration.
+    pub(super) fn coarser_duration(
+        &self,
+        interpolation: &Interpolation<'_>,
+        waypoints: &JointWaypoints,
+    ) -> Result<f64> {
+        let path = interpolation.path(waypoints)?;
+        coarse_duration(&path, &self.limits, SEGMENTS_A_PIECE / 2 * path.pieces())
     }
 
     /// Whether everything that is to be kept is certified to hold along a motion.
