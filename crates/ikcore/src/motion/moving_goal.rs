@@ -27,6 +27,9 @@ const MISTAKEN: f64 = 2.0 * NOISELESS;
 /// Samples that a parabola needs.
 const PARABOLA: usize = 3;
 
+/// Gap between samples that says no more of their interval, in intervals.
+const LOST: f64 = 2.0;
+
 /// Least weight of a sample relative to the next one.
 const LEAST_WEIGHT: f64 = 1e-3;
 
@@ -243,7 +246,9 @@ impl MovingGoal {
         let gap = time - self.last_sample;
         self.noise.add(q, time, &scales.change);
         let young = self.samples.is_some_and(|samples| samples < PARABOLA);
-        self.interval += if young { gap - self.interval } else { 0.2 * (gap - self.interval) };
+        // A gap counts as two intervals at most: samples were lost.
+        let interval = if self.interval > 1.0 { gap.min(LOST * self.interval) } else { gap };
+        self.interval += if young { interval - self.interval } else { 0.2 * (interval - self.interval) };
         self.move_fit(gap);
         (self.last_sample, self.arrived) = (time, self.now);
         let before = self.memory.samples();
