@@ -11,7 +11,7 @@ use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
 use crate::task::{Aims, CheckedTask, First, Target, Tolerance};
 
 /// Starts of an arm without a closed form for positions.
-const STARTS: usize = 16;
+const STARTS: usize = 48;
 
 /// Evaluation budget of the descent from such a start to the first part alone.
 const TO_FIRST: usize = 30;
