@@ -7,7 +7,7 @@ use super::outline::{Stage, StageKind};
 use super::program::Move;
 use super::report::{bounds_on, speed_on, tip_speed};
 use super::run::{Run, RunPart};
-use super::timing::{PathTime, path_times, time_at, timed};
+use super::timing::{PathTime, path_times, time_at, timed, times_between};
 use crate::error::{Error, Result};
 use crate::free_path;
 use crate::math::vector::largest_difference;
@@ -151,11 +151,11 @@ impl<'a> Assembly<'a> {
                 start = end_of_part;
                 continue;
             };
-            let inside = |at: &&PathTime| window.begin <= at.s && at.s <= window.end();
-            let own = |at: &PathTime| PathTime { s: window.from + at.s - window.begin, ..*at };
-            let on_it: Vec<PathTime> = times.iter().filter(inside).map(own).collect();
+            let own = |at: PathTime| PathTime { s: window.from + at.s - window.begin, ..at };
+            let on_it = times_between(&times, [window.begin, window.end()]);
+            let on_it: Vec<PathTime> = on_it.into_iter().map(own).collect();
             for (index, s) in tool_path.ends_of_moves() {
-                let is_last = s >= window.to || on_it.is_empty();
+                let is_last = s >= window.to;
                 let end = if is_last { end_of_part } else { begin + time_at(&on_it, s) };
                 let bounds = bounds_on(tool_path, index, (&motion, &on_it, begin), self.limits);
                 self.report(index, [start, end], speed_on(tool_path, index, &on_it), bounds);

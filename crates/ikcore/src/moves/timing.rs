@@ -105,3 +105,14 @@ pub(super) fn time_at(times: &[PathTime], s: f64) -> f64 {
     let (from, to) = (times[after.saturating_sub(1)], times[after]);
     if to.s > from.s { from.t + (to.t - from.t) * ((s - from.s) / (to.s - from.s)).clamp(0.0, 1.0) } else { to.t }
 }
+
+/// The samples between two path parameters, and both of these.
+pub(super) fn times_between(times: &[PathTime], [from, to]: [f64; 2]) -> Vec<PathTime> {
+    let at = |s: f64| {
+        let t = time_at(times, s);
+        let after = times.partition_point(|at| at.t < t).min(times.len() - 1);
+        PathTime { t, s, rate: times[after].rate }
+    };
+    let between = times.iter().filter(|at| from < at.s && at.s < to).copied();
+    std::iter::once(at(from)).chain(between).chain([at(to)]).collect()
+}
