@@ -1,5 +1,6 @@
 //! Whether a posture on the path is clear, and whether the arm gets from one to the next.
 
+use crate::along_path::open_turns::OpenTurns;
 use crate::along_path::timed::{NEAR_ENOUGH, PathProblem, Projection, strays};
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Point};
@@ -63,12 +64,7 @@ impl<'a> Passage<'a> {
 
     /// Opens the limits of joints that can turn round once or more.
     pub fn open_turns(&mut self) {
-        let range = |j: usize| {
-            let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
-            let turns = self.problem.robot.turn_period(j).is_some_and(|period| upper - lower >= period);
-            if turns { (f64::NEG_INFINITY, f64::INFINITY) } else { (lower, upper) }
-        };
-        self.projection.bounds = Bounds::from_ranges((0..self.problem.robot.dof()).map(range));
+        self.projection.bounds = self.turns().bounds();
     }
 
     /// Closes the limits of all joints again.
@@ -78,13 +74,7 @@ impl<'a> Passage<'a> {
 
     /// Shifts each joint of a sequence by whole turns into its limits; false if one winds too far.
     pub fn shift_inside(&self, sequence: &mut [Point]) -> bool {
-        (0..self.problem.robot.dof()).all(|j| {
-            let values = || sequence.iter().map(|q| q[j]);
-            let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            let shift = self.shift(j, low, high);
-            sequence.iter_mut().for_each(|q| q[j] += shift.unwrap_or(0.0));
-            shift.is_some()
-        })
+        self.turns().shift_inside(sequence)
     }
 
     /// Whether whole turns bring each joint inside its limits, with these smallest and largest values on its way.
@@ -94,13 +84,11 @@ impl<'a> Passage<'a> {
 
     /// Whole turns of a joint (rad) that bring what it sweeps inside its limits; `None` if there are none.
     pub fn shift(&self, j: usize, low: f64, high: f64) -> Option<f64> {
-        let (lower, upper) = (self.limits.lower()[j], self.limits.upper()[j]);
-        if lower <= low && high <= upper {
-            return Some(0.0);
-        }
-        let period = self.problem.robot.turn_period(j)?;
-        let shift = ((0.5 * (lower + upper - low - high)) / period).round() * period;
-        (lower <= low + shift && high + shift <= upper).then_some(shift)
+        self.turns().shift(j, low, high)
+    }
+
+    fn turns(&self) -> OpenTurns<'_> {
+        OpenTurns { robot: &self.problem.robot, limits: &self.limits }
     }
 
     /// Returns the posture on the path nearest to `guess` without regard to limits, if there is one.

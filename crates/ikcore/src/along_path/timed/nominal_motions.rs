@@ -6,6 +6,7 @@ use super::null_space_offsets::travel;
 use super::path_problem::PathProblem;
 use super::path_walk::{PathWalk, WalkAim};
 use super::projection::Projection;
+use crate::along_path::open_turns::OpenTurns;
 use crate::along_path::tip_path::PathTarget;
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, solve_all};
@@ -27,15 +28,12 @@ const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 /// Values of the redundancy at which the closed form gives further starts.
 const REDUNDANCY: usize = 4;
 
-/// Number of motions kept, and smallest distance between their starts (rad, m): the shortest is not always the fastest.
+/// Number of motions kept, and smallest distance between their starts or ends (rad, m): the shortest is not always the fastest.
 const BRANCHES: usize = 8;
 const APART: f64 = 0.5;
 
 /// Difference below which motions are the same (rad, m).
 const SAME: f64 = 1e-6;
-
-/// Maximum number of halvings of a step from point to point.
-const HALVINGS: usize = 10;
 
 /// Curve that a motion follows.
 #[derive(Debug, Clone, Copy)]
@@ -50,15 +48,30 @@ enum Leading {
     WholePose,
 }
 
+/// A motion to search around.
+pub(super) struct NominalMotion {
+    pub waypoints: JointWaypoints,
+    /// The unshortened motion, if it and its shortenings within parts of the tolerance band are not tried yet.
+    pub base: Option<JointWaypoints>,
+}
+
+impl NominalMotion {
+    fn whole(waypoints: JointWaypoints) -> Self {
+        Self { waypoints, base: None }
+    }
+}
+
 /// Search for nominal motions.
 pub(super) struct NominalMotions<'a> {
     problem: &'a PathProblem<'a>,
     projection: Projection<'a>,
+    /// Whether a motion has come to a fork.
+    forks: bool,
 }
 
 impl<'a> NominalMotions<'a> {
     pub fn new(problem: &'a PathProblem<'a>) -> Self {
-        Self { problem, projection: Projection::new(&problem.robot, problem.keeps) }
+        Self { problem, projection: Projection::new(&problem.robot, problem.keeps), forks: false }
     }
 
     /// Returns the shortest motions that follow the path, each shortened within the tolerance band; the first also
@@ -67,7 +80,7 @@ impl<'a> NominalMotions<'a> {
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted).
-    pub fn all(mut self) -> Result<Vec<JointWaypoints>> {
+    pub fn all(&mut self) -> Result<Vec<NominalMotion>> {
         let PathProblem { tip_path, options, .. } = self.problem;
         if let Some(start) = &options.start {
             return self.begun_at(start).map_or(Ok(vec![]), |nominal| self.shortened(nominal, &[]));
@@ -80,16 +93,27 @@ impl<'a> NominalMotions<'a> {
         let mut bases = bases.into_iter();
         let mut motions = bases.next().map_or(Ok(vec![]), |base| self.shortened(base, rungs))?;
         for base in bases {
-            motions.push(self.tightened(base, f64::INFINITY)?);
+            let waypoints = self.tightened(base.clone(), f64::INFINITY)?;
+            motions.push(NominalMotion { waypoints, base: Some(base).filter(|_| !rungs.is_empty()) });
         }
         if tip_path.ignores_a_part() {
-            motions.extend(self.shortest(Leading::WholePose)?);
+            motions.extend(self.shortest(Leading::WholePose)?.into_iter().map(NominalMotion::whole));
         }
         Ok(motions)
     }
 
+    /// Returns a motion shortened within parts of the tolerance band, and as it is.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted).
+    pub fn within_parts(&mut self, base: JointWaypoints) -> Result<Vec<NominalMotion>> {
+        let mut motions = self.shortened(base, &RUNGS)?;
+        motions.remove(0);
+        Ok(motions)
+    }
+
     /// Returns a motion shortened within the tolerance band, within these parts of it, and as it is.
-    fn shortened(&mut self, nominal: JointWaypoints, rungs: &[f64]) -> Result<Vec<JointWaypoints>> {
+    fn shortened(&mut self, nominal: JointWaypoints, rungs: &[f64]) -> Result<Vec<NominalMotion>> {
         let mut motions = vec![self.tightened(nominal.clone(), f64::INFINITY)?];
         for most in rungs.iter().filter(|most| **most < self.problem.tip_path.largest_tolerance()) {
             motions.push(self.tightened(nominal.clone(), *most)?);
@@ -97,7 +121,7 @@ impl<'a> NominalMotions<'a> {
         if largest_difference(&motions[0].rows, &nominal.rows) > SAME {
             motions.push(nominal);
         }
-        Ok(motions)
+        Ok(motions.into_iter().map(NominalMotion::whole).collect())
     }
 
     /// Returns a motion shortened within the tolerance band, or `most` of it (m, rad).
@@ -112,31 +136,53 @@ impl<'a> NominalMotions<'a> {
 
     /// Returns the motions of least joint travel from several starts, each on another branch.
     fn shortest(&mut self, leading: Leading) -> Result<Vec<JointWaypoints>> {
-        let PathProblem { robot, options, .. } = self.problem;
+        let PathProblem { robot, tip_path, options, .. } = self.problem;
         let mut starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
-        starts.extend(self.branches()?);
+        starts.extend(self.branches(0.0)?);
+        // Where the path begins at a singularity, one configuration stands there for a family.
+        let knots = tip_path.knots(INTERVALS);
+        let middle = knots[knots.len() / 2];
+        let midway = self.branches(middle)?;
         let mut found: Vec<(f64, JointWaypoints)> = vec![];
-        for start in starts.chunks_exact(robot.dof()) {
+        let mut add = |start: (f64, &[f64])| -> Result<()> {
             checkpoint()?;
-            let nominal = self.follow(start, leading);
-            found.extend(nominal.map(|nominal| (travel(&nominal.rows, robot.dof()), nominal)));
-        }
-        found.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut kept: Vec<JointWaypoints> = vec![];
-        for (_, nominal) in found {
-            let is_known = |other: &JointWaypoints| largest_difference(other.row(0), nominal.row(0)) < APART;
-            if kept.len() < BRANCHES && !kept.iter().any(is_known) {
-                kept.push(nominal);
+            let passes = |motion: &JointWaypoints| {
+                let knot = motion.knots.iter().position(|knot| *knot == start.0);
+                knot.is_some_and(|i| largest_difference(motion.row(i), start.1) < SAME)
+            };
+            if self.forks || !found.iter().any(|(_, motion)| passes(motion)) {
+                let motions = self.each_way(start, leading);
+                found.extend(motions.map(|motion| (travel(&motion.rows, robot.dof()), motion)));
             }
-        }
-        Ok(kept)
+            Ok(())
+        };
+        starts.chunks_exact(robot.dof()).try_for_each(|start| add((0.0, start)))?;
+        midway.chunks_exact(robot.dof()).try_for_each(|start| add((middle, start)))?;
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        Ok(self.different(found.into_iter().map(|(_, motion)| motion)))
     }
 
-    /// Returns the configurations of the closed form at the beginning of the path, if there is one, so that no branch
-    /// is missed.
-    fn branches(&self) -> Result<Vec<f64>> {
+    /// Returns the first motions with different ends; one that is turned by whole turns is the same.
+    fn different(&self, motions: impl Iterator<Item = JointWaypoints>) -> Vec<JointWaypoints> {
+        let turns = OpenTurns { robot: &self.problem.robot, limits: &self.projection.bounds };
+        let mut kept: Vec<JointWaypoints> = vec![];
+        for motion in motions {
+            let is_same = |other: &JointWaypoints| {
+                let ends = [(0, 0), (motion.knots.len() - 1, other.knots.len() - 1)];
+                ends.into_iter().all(|(i, k)| turns.difference(motion.row(i), other.row(k)) < APART)
+            };
+            if kept.len() < BRANCHES && !kept.iter().any(is_same) {
+                kept.push(motion);
+            }
+        }
+        kept
+    }
+
+    /// Returns the configurations of the closed form at a place of the path, if there is one, so that no branch is
+    /// missed.
+    fn branches(&self, fraction: f64) -> Result<Vec<f64>> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
-        let target = tip_path.target(0.0);
+        let target = tip_path.target(fraction);
         if !matches!(target, Target::Pose(_)) || robot.solves_at_once().is_none() {
             return Ok(vec![]);
         }
@@ -152,27 +198,58 @@ impl<'a> NominalMotions<'a> {
         let PathProblem { robot, tip_path, .. } = self.problem;
         let excess = tip_path.path_target(0.0).excess(|| robot.tip(q));
         let in_parallel = excess.is_none_or(|excess| excess == [0.0; 2]);
-        let parallel = if in_parallel { self.follow(q, Leading::InParallel) } else { None };
-        parallel.or_else(|| self.follow(q, Leading::WithinTolerance))
+        let mut follow = |leading| {
+            let motions = self.each_way((0.0, q), leading);
+            motions.min_by(|one, other| travel(&one.rows, q.len()).total_cmp(&travel(&other.rows, q.len())))
+        };
+        let parallel = if in_parallel { follow(Leading::InParallel) } else { None };
+        parallel.or_else(|| follow(Leading::WithinTolerance))
     }
 
-    /// Follows the path from `start`, each configuration from the one before.
-    fn follow(&mut self, start: &[f64], leading: Leading) -> Option<JointWaypoints> {
+    /// The motions that follow the path through near `start`, a path parameter and a configuration there: back from a
+    /// singularity, and through it if there are forks.
+    fn each_way(&mut self, start: (f64, &[f64]), leading: Leading) -> impl Iterator<Item = JointWaypoints> + use<> {
+        let back = self.walked(start, leading, false);
+        let through = if self.forks { self.walked(start, leading, true) } else { None };
+        back.into_iter().chain(through)
+    }
+
+    /// Follows the path through near `start`, whatever whole turns of the joints fit.
+    fn walked(&mut self, start: (f64, &[f64]), leading: Leading, straight_on: bool) -> Option<JointWaypoints> {
+        let walked = self.follow(start, leading, straight_on);
+        let limits = self.projection.bounds.clone();
+        let turns = OpenTurns { robot: &self.problem.robot, limits: &limits };
+        let opened = turns.bounds();
+        if walked.is_some() || self.problem.options.start.is_some() || opened == limits {
+            return walked;
+        }
+        self.projection.bounds = opened;
+        let walked = self.follow(start, leading, straight_on);
+        let shifted = walked.and_then(|mut motion| {
+            let mut rows: Vec<&mut [f64]> = motion.rows.chunks_exact_mut(self.problem.robot.dof()).collect();
+            turns.shift_inside(&mut rows).then_some(motion)
+        });
+        self.projection.bounds = limits;
+        shifted
+    }
+
+    /// Follows the path through `start`, each configuration the nearest to the one before, or `straight_on` where it
+    /// forks.
+    fn follow(&mut self, (from, start): (f64, &[f64]), leading: Leading, straight_on: bool) -> Option<JointWaypoints> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
-        let first = tip_path.path_target(0.0);
+        let first = tip_path.path_target(from);
         let aim = match leading {
             Leading::OnPath => WalkAim::Displaced(first.on_path().displacement),
             Leading::InParallel => WalkAim::Displaced(first.held_at(|| robot.tip(start)).displacement),
             Leading::WithinTolerance => WalkAim::Displaced(None),
             Leading::WholePose => WalkAim::WholePose,
         };
-        let mut walk = PathWalk { tip_path, aim, projection: &mut self.projection };
-        let first = if options.start.is_some() { start.to_vec() } else { walk.begun_near(start)? };
+        let (projection, forks) = (&mut self.projection, &mut self.forks);
+        let mut walk = PathWalk { tip_path, aim, projection, straight_on, forks };
         let knots = tip_path.knots(INTERVALS);
-        let mut walked = JointWaypoints { knots: vec![knots[0]], rows: first };
-        for knot in &knots[1..] {
-            walk.on_to(*knot, HALVINGS, &mut walked)?;
+        match options.start {
+            Some(_) => walk.on_from(&knots, from, start.to_vec()),
+            None => walk.along(&knots, from, start),
         }
-        Some(walked)
     }
 }

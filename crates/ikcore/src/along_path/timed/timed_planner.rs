@@ -1,7 +1,7 @@
 //! The planner: corners, the search for postures, the timing of the best.
 
 use super::interpolation::{Interpolation, JointWaypoints};
-use super::nominal_motions::NominalMotions;
+use super::nominal_motions::{NominalMotion, NominalMotions};
 use super::null_space_offsets::NullSpaceOffsets;
 use super::path_problem::{FollowedPath, PathProblem, SlowCorners};
 use super::timed_cost::TimedCost;
@@ -18,6 +18,9 @@ const EVALUATIONS: usize = 2000;
 /// torques limit the motion.
 const HOPELESS: f64 = 1.05;
 
+/// The same factor for a motion that is shortened within the whole tolerance band, before parts of the band are tried.
+const PROMISING: f64 = 1.25;
+
 /// What finer grids of the timing save, in terms of what the last halving saved: measured 1.0 to 1.2.
 const STILL_SAVED: f64 = 1.5;
 
@@ -29,21 +32,13 @@ const TELLING: f64 = 0.01;
 /// # Errors
 /// As [`plan_along_path`](crate::planning::plan_along_path).
 pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<Option<Plan>> {
-    let (mut candidates, mut refused) = (vec![], None);
-    let mut least = f64::INFINITY;
-    for Nominal { roughly, interpolation, waypoints } in nominals(problem)? {
-        if roughly > HOPELESS * least || stays_slower(problem, (roughly, least), &interpolation, &waypoints)? {
-            continue;
-        }
-        match problem.motion_if_held(&interpolation, waypoints.clone())? {
-            Ok(motion) => {
-                let plan = problem.plan(motion);
-                least = if plan.violations.is_empty() { least.min(plan.cost) } else { least };
-                candidates.push(Candidate { plan, interpolation, waypoints });
-            }
-            Err(heavy) => refused = refused.or(Some(heavy)),
-        }
+    let mut motions = NominalMotions::new(problem);
+    let mut timed = TimedCandidates::new(problem);
+    timed.add(motions.all()?)?;
+    for base in timed.promising_bases() {
+        timed.add(motions.within_parts(base)?)?;
     }
+    let TimedCandidates { candidates, refused, .. } = timed;
     let mut candidates = candidates.into_iter();
     let Some(widest) = candidates.next() else { return refused.map_or(Ok(None), Err) };
     // The shortest motion is not always the quickest, nor the quickest one after the search.
@@ -61,24 +56,82 @@ pub(crate) fn along_path(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -
     }
 }
 
+/// The motions along the path that are timed.
+struct TimedCandidates<'p> {
+    problem: &'p PathProblem<'p>,
+    candidates: Vec<Candidate<'p>>,
+    /// Unshortened motions of which only the widest shortening is timed, and how long that roughly takes (s).
+    bases: Vec<(f64, JointWaypoints)>,
+    /// Alternatives at corners that are not worth trying on further motions.
+    slow: SlowCorners,
+    /// The least cost of those that keep everything.
+    least: f64,
+    /// The reason why joints cannot hold the arm on the first motion that is refused for it.
+    refused: Option<Error>,
+}
+
+impl<'p> TimedCandidates<'p> {
+    fn new(problem: &'p PathProblem<'p>) -> Self {
+        let (slow, least) = (SlowCorners::default(), f64::INFINITY);
+        Self { problem, candidates: vec![], bases: vec![], slow, least, refused: None }
+    }
+
+    /// Times motions, but none that is hopeless beside another one.
+    ///
+    /// # Errors
+    /// Those of [`PathProblem::corners_of`] and [`PathProblem::motion`].
+    fn add(&mut self, motions: Vec<NominalMotion>) -> Result<()> {
+        let problem = self.problem;
+        for Nominal { roughly, interpolation, waypoints, base } in nominals(problem, motions, &mut self.slow)? {
+            self.bases.extend(base.map(|base| (roughly, base)));
+            if roughly > HOPELESS * self.least
+                || stays_slower(problem, (roughly, self.least), &interpolation, &waypoints)?
+            {
+                continue;
+            }
+            match problem.motion_if_held(&interpolation, waypoints.clone())? {
+                Ok(motion) => {
+                    let plan = problem.plan(motion);
+                    self.least = if plan.violations.is_empty() { self.least.min(plan.cost) } else { self.least };
+                    self.candidates.push(Candidate { plan, interpolation, waypoints });
+                }
+                Err(heavy) => self.refused = self.refused.take().or(Some(heavy)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the unshortened motions that may be the quickest in part of the tolerance band: a wide one is not always
+    /// used well.
+    fn promising_bases(&mut self) -> Vec<JointWaypoints> {
+        let most = PROMISING * self.least;
+        let bases = std::mem::take(&mut self.bases).into_iter();
+        bases.filter_map(|(roughly, base)| (roughly <= most).then_some(base)).collect()
+    }
+}
+
 /// A motion along the path that is timed only roughly.
 struct Nominal<'p> {
     /// Duration (s), or zero where the duration is not what a plan costs.
     roughly: f64,
     interpolation: Interpolation<'p>,
     waypoints: JointWaypoints,
+    base: Option<JointWaypoints>,
 }
 
-/// The motions to begin with: the first as it comes, the others by their rough duration.
-fn nominals<'p>(problem: &'p PathProblem<'p>) -> Result<Vec<Nominal<'p>>> {
-    let mut slow = SlowCorners::default();
-    let of = |waypoints: JointWaypoints| {
+/// Times motions roughly: the first comes first, the others by their duration.
+fn nominals<'p>(
+    problem: &'p PathProblem<'p>,
+    motions: Vec<NominalMotion>,
+    slow: &mut SlowCorners,
+) -> Result<Vec<Nominal<'p>>> {
+    let of = |NominalMotion { waypoints, base }| {
         let (interpolation, waypoints, duration) =
-            problem.quick_corners_of(&waypoints, problem.accuracy, true, &mut slow)?;
+            problem.quick_corners_of(&waypoints, problem.accuracy, true, slow)?;
         let roughly = if problem.options.objective == Cost::Time { duration } else { 0.0 };
-        Ok(Nominal { roughly, interpolation, waypoints })
+        Ok(Nominal { roughly, interpolation, waypoints, base })
     };
-    let mut all: Vec<Nominal<'p>> = NominalMotions::new(problem).all()?.into_iter().map(of).collect::<Result<_>>()?;
+    let mut all: Vec<Nominal<'p>> = motions.into_iter().map(of).collect::<Result<_>>()?;
     let others = all.get_mut(1..).unwrap_or_default();
     others.sort_by(|one, other| one.roughly.total_cmp(&other.roughly));
     Ok(all)
