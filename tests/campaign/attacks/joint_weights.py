@@ -53,6 +53,13 @@ class JointWeights(Attack):
             f"target, weights = np.array({target.tolist()}), {self.weights(case).tolist()}\n{PROGRAM}"
         )
 
+    @staticmethod
+    def open(case: Case, solution: Any) -> float:
+        """How far the tolerance of a target leaves the joints undetermined: far where the arm is nearly singular."""
+        jacobian = arms.kinematics(case["joints"], solution.q[None])[1][0]
+        least = np.linalg.svd(jacobian if case["pose"] else jacobian[:3], compute_uv=False).min()
+        return max(1e-6, min(TOLERANCE / max(least, TOLERANCE), (2.0 * TOLERANCE) ** 0.5))
+
     def judge(self, case: Case, left: dict[str, Any]) -> int:
         solution, plain, weights = left["solution"], left["plain"], self.weights(case)
         start, goal = arms.configurations(case["joints"])
@@ -68,7 +75,11 @@ class JointWeights(Attack):
             raise BrokenError("with weights the target is missed", solution.message)
         weights = np.minimum(weights / weights.min(), MOST)
         length, without = (np.linalg.norm(weights * (one.q - start)) for one in (solution, plain))
-        if plain.success and plain.restarts == 0 and length > without * (1.0 + 1e-6) + 1e-6 * weights.max():
+        if (
+            plain.success
+            and plain.restarts == 0
+            and length > without * (1.0 + 1e-6) + self.left(case, plain) * weights.max()
+        ):
             raise BrokenError("the solution without weights is nearer by the weights", (length, without))
         weighted, unweighted = left["ends"]
         on_its_way = weighted.message.startswith("nearer")
