@@ -138,6 +138,35 @@ fn wider_tolerances_and_limits_lose_no_path() {
     }
 }
 
+/// Asserts that a line in joint space with the limits of the robot takes no longer than with limits close around it.
+fn no_slower_with_wide_limits(name: &str, first: &[f64], last: &[f64]) {
+    let robot = Robot::named(name).unwrap();
+    let narrow = robot
+        .with_limits(|j, joint| {
+            joint.lower = joint.lower.max(first[j].min(last[j]) - 0.003);
+            joint.upper = joint.upper.min(first[j].max(last[j]) + 0.003);
+        })
+        .unwrap();
+    let tip_path = line(&robot, first, last);
+    let [narrow, wide] = [narrow, robot].map(|robot| planned(&robot, &tip_path, &options(&robot)).unwrap().cost);
+    assert!(wide <= 1.01 * narrow, "{name}: {wide} s, not {narrow} s");
+}
+
+#[test]
+fn wide_limits_lose_no_motion_through_a_singularity() {
+    let (first, last) = ([-2.41, -1.07, -1.14, -1.07, 1.31, 3.14], [1.38, -1.08, 1.19, 1.48, 0.49, -0.06]);
+    no_slower_with_wide_limits("kr210", &first, &last);
+    let (first, last) = ([-0.63, -0.31, 2.31, 2.14, -1.37, -0.75], [1.77, -0.37, -0.71, -1.36, -0.26, 0.19]);
+    no_slower_with_wide_limits("kr210", &first, &last);
+}
+
+#[test]
+fn wide_limits_lose_no_motion_from_another_turn_or_a_singularity() {
+    let (first, last) = ([PI, -0.0873, -1.889, 3.014, 1.443, -0.785], [0.942, -0.0873, -0.567, 0.286, 1.443, -0.785]);
+    no_slower_with_wide_limits("kr210", &first, &last);
+    no_slower_with_wide_limits("ur10", &[0.0, 0.0, -3.0, 1.0, -PI, 0.0], &[0.0, 0.0, 0.0, 0.0, 1.0, 2.0]);
+}
+
 #[test]
 fn only_what_is_proven_is_called_out_of_reach() {
     let far = Plane::xy([3.0, 0.0, 0.0]).unwrap();

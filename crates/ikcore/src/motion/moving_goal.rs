@@ -439,6 +439,21 @@ mod tests {
     }
 
     #[test]
+    fn lost_samples_hardly_lengthen_the_interval_and_a_slower_rate_does() {
+        let scales = scales();
+        let mut goal = MovingGoal::of_arm(&[0.0], &JointState::at_rest(1), 0.0, 1.0);
+        let mut sampled = |every: usize, ticks: usize| {
+            (1..=ticks).for_each(|i| tick(&mut goal, (i % every == 0).then_some(0.1), &scales));
+            goal.interval
+        };
+        assert_eq!(sampled(3, 60), 3.0);
+        let after_gap = sampled(30, 30);
+        assert!((3.0..=3.6).contains(&after_gap), "{after_gap}");
+        let slower = sampled(30, 900);
+        assert!((slower - 30.0).abs() < 1.0, "{slower}");
+    }
+
+    #[test]
     fn lost_samples_of_a_noisy_goal_cost_no_more_than_the_gap() {
         let path = |time: f64| 0.2 * (0.008 * time).sin();
         for noise in [0.0, 1e-3, 4e-3] {
