@@ -75,11 +75,8 @@ class JointWeights(Attack):
             raise BrokenError("with weights the target is missed", solution.message)
         weights = np.minimum(weights / weights.min(), MOST)
         length, without = (np.linalg.norm(weights * (one.q - start)) for one in (solution, plain))
-        if (
-            plain.success
-            and plain.restarts == 0
-            and length > without * (1.0 + 1e-6) + self.left(case, plain) * weights.max()
-        ):
+        most = without * (1.0 + 1e-6) + self.open(case, plain) * weights.max()
+        if plain.success and plain.restarts == 0 and length > most:
             raise BrokenError("the solution without weights is nearer by the weights", (length, without))
         weighted, unweighted = left["ends"]
         on_its_way = weighted.message.startswith("nearer")
