@@ -122,11 +122,15 @@ impl Robot {
                 _ => return Err(none(problem.as_str().into())),
             }
         }
-        for LinkInertia { link, inertia } in masses.links.iter().chain(&masses.payloads) {
+        let mut add = |LinkInertia { link, inertia }: &LinkInertia| {
             let (frame, offset) = self.carrier_of_link_number(numbers[link.as_str()]);
             moments[frame].add(&MassMoments::of(inertia).moved(&offset));
-        }
-        if moments.iter().all(|moments| moments.mass == 0.0) {
+        };
+        masses.links.iter().for_each(&mut add);
+        masses.payloads.iter().for_each(&mut add);
+        // What an arm carries says nothing of its own masses.
+        let has_mass = |of: &[LinkInertia]| of.iter().any(|link| link.inertia.mass > 0.0);
+        if !has_mass(&masses.links) && masses.faults.is_empty() {
             return Err(none(message!["no link has a mass: give ", Setting::Inertias]));
         }
         let bodies = elements.iter().zip(&moments[1..]).map(|((parent, _, motion), moments)| MovingBody {
