@@ -196,6 +196,11 @@ REFUSED = {
         "the weld equality of 'body_e' and 'right'",
         "g",
     ),
+    "a weld beside the chain against a lock of a joint that bends the chain": (
+        arm(joint("g", "1 0 0 0 0", "") + joint("b", "0 0 0 0 1", "g") + "<weld body1='body_e' body2='right'/>"),
+        "the weld equality of 'body_e' and 'right'",
+        "g",
+    ),
     "two bends of a joint": (
         arm(joint("d", "0 .5 .2 0 0", "c") + joint("d", "0 .5 .3 0 0", "b", "name='bend'")),
         "the joint equality 'bend' of 'd' and 'b'",

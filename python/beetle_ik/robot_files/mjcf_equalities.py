@@ -53,6 +53,7 @@ class Equalities:
         self.curves: dict[int, Curve] = {}
         equations = [equation for equality in self.active for equation in self._linear(equality)]
         self._coupled = [set(factors) for factors, _ in equations]
+        self._coupled += [set(self._ends(equality)) for equality in self.active if self._is_bend(equality)]
         self._solve(equations)
         for equality in self.active:
             self._follow_curve(equality)
@@ -126,7 +127,7 @@ class Equalities:
         return min(stretches, key=lambda ends: max(ends[0] - rest, rest - ends[1]), default=None)
 
     def coupled_with(self, joints: set[int]) -> set[int]:
-        """Returns these joints and all that linear equalities couple with them."""
+        """Returns these joints and all that equalities of joints couple with them."""
         while more := {joint for each in self._coupled if each & joints for joint in each} - joints:
             joints = joints | more
         return joints
@@ -253,19 +254,23 @@ class Equalities:
 
     def _follow_curve(self, equality: int) -> None:
         """Lets a joint follow another one by the polynomial of an equality, unless something else moves it already."""
-        model, ends = self.model, self._ends(equality)
-        coefficients = np.array(model.eq_data[equality][:5])
-        if self._kind(equality) != "joint" or len(ends) != 2 or not coefficients[2:].any():
+        if not self._is_bend(equality):
             return
+        model, ends = self.model, self._ends(equality)
         follower, leader = ends
         if follower in self.drives or follower in self.curves or self._first(leader) == follower:
             return
         own, other = (float(model.qpos0[model.jnt_qposadr[end]]) for end in ends)
-        polynomial = Polynomial(coefficients)(Polynomial([-other, 1.0])) + own
+        polynomial = Polynomial(np.array(model.eq_data[equality][:5]))(Polynomial([-other, 1.0])) + own
         if self._first(leader) is None:
             self.drives[follower] = Drive(None, 1.0, float(polynomial(self.position(leader, 0.0))))
         elif not self._is_curved(leader) and follower not in {curve.leader for curve in self.curves.values()}:
             self.curves[follower] = Curve(leader, polynomial)
+
+    def _is_bend(self, equality: int) -> bool:
+        """Whether an equality couples two joints by a polynomial that is no line."""
+        bends = bool(self.model.eq_data[equality][2:5].any())
+        return self._kind(equality) == "joint" and len(self._ends(equality)) == 2 and bends
 
     def _is_curved(self, joint: int | None) -> bool:
         """Whether a joint follows another one by a polynomial, itself or through others."""
