@@ -29,7 +29,12 @@ impl OpenTurns<'_> {
             return Some(0.0);
         }
         let period = self.robot.turn_period(j)?;
-        let shift = ((0.5 * (lower + upper - low - high)) / period).round() * period;
+        let turns = match [lower.is_finite(), upper.is_finite()] {
+            [true, true] => ((0.5 * (lower + upper - low - high)) / period).round(),
+            [true, false] => ((lower - low) / period).ceil(),
+            [false, _] => ((upper - high) / period).floor(),
+        };
+        let shift = turns * period;
         (lower <= low + shift && high + shift <= upper).then_some(shift)
     }
 

@@ -27,7 +27,7 @@ const MISTAKEN: f64 = 2.0 * NOISELESS;
 /// Samples that a parabola needs.
 const PARABOLA: usize = 3;
 
-/// Gap between samples that says no more of their interval, in intervals.
+/// Largest gap that counts towards the interval, in intervals: in a longer one samples were lost.
 const LOST: f64 = 2.0;
 
 /// Least weight of a sample relative to the next one.
@@ -246,7 +246,6 @@ impl MovingGoal {
         let gap = time - self.last_sample;
         self.noise.add(q, time, &scales.change);
         let young = self.samples.is_some_and(|samples| samples < PARABOLA);
-        // A gap counts as two intervals at most: samples were lost.
         let interval = if self.interval > 1.0 { gap.min(LOST * self.interval) } else { gap };
         self.interval += if young { interval - self.interval } else { 0.2 * (interval - self.interval) };
         self.move_fit(gap);

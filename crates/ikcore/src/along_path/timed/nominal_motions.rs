@@ -65,13 +65,14 @@ impl NominalMotion {
 pub(super) struct NominalMotions<'a> {
     problem: &'a PathProblem<'a>,
     projection: Projection<'a>,
-    /// Whether a motion has come to a fork.
+    /// Whether the last walk came to a fork, and whether any did.
     forks: bool,
+    has_forked: bool,
 }
 
 impl<'a> NominalMotions<'a> {
     pub fn new(problem: &'a PathProblem<'a>) -> Self {
-        Self { problem, projection: Projection::new(&problem.robot, problem.keeps), forks: false }
+        Self { problem, projection: Projection::new(&problem.robot, problem.keeps), forks: false, has_forked: false }
     }
 
     /// Returns the shortest motions that follow the path, each shortened within the tolerance band; the first also
@@ -83,18 +84,18 @@ impl<'a> NominalMotions<'a> {
     pub fn all(&mut self) -> Result<Vec<NominalMotion>> {
         let PathProblem { tip_path, options, .. } = self.problem;
         if let Some(start) = &options.start {
-            return self.begun_at(start).map_or(Ok(vec![]), |nominal| self.shortened(nominal, &[]));
+            return self.begun_at(start).map_or(Ok(vec![]), |nominal| self.shortened(nominal, false));
         }
         let mut bases = self.shortest(Leading::OnPath)?;
-        let mut rungs = &RUNGS[..];
+        let mut has_parts = true;
         if bases.is_empty() && tip_path.has_tolerance() {
-            (bases, rungs) = (self.shortest(Leading::WithinTolerance)?, &[]);
+            (bases, has_parts) = (self.shortest(Leading::WithinTolerance)?, false);
         }
         let mut bases = bases.into_iter();
-        let mut motions = bases.next().map_or(Ok(vec![]), |base| self.shortened(base, rungs))?;
+        let mut motions = bases.next().map_or(Ok(vec![]), |base| self.shortened(base, has_parts))?;
         for base in bases {
             let waypoints = self.tightened(base.clone(), f64::INFINITY)?;
-            motions.push(NominalMotion { waypoints, base: Some(base).filter(|_| !rungs.is_empty()) });
+            motions.push(NominalMotion { waypoints, base: Some(base).filter(|_| has_parts) });
         }
         if tip_path.ignores_a_part() {
             motions.extend(self.shortest(Leading::WholePose)?.into_iter().map(NominalMotion::whole));
@@ -107,21 +108,25 @@ impl<'a> NominalMotions<'a> {
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted).
     pub fn within_parts(&mut self, base: JointWaypoints) -> Result<Vec<NominalMotion>> {
-        let mut motions = self.shortened(base, &RUNGS)?;
-        motions.remove(0);
+        let mut motions = vec![];
+        for most in RUNGS.into_iter().filter(|most| *most < self.problem.tip_path.largest_tolerance()) {
+            motions.push(NominalMotion::whole(self.tightened(base.clone(), most)?));
+        }
+        motions.push(NominalMotion::whole(base));
         Ok(motions)
     }
 
-    /// Returns a motion shortened within the tolerance band, within these parts of it, and as it is.
-    fn shortened(&mut self, nominal: JointWaypoints, rungs: &[f64]) -> Result<Vec<NominalMotion>> {
-        let mut motions = vec![self.tightened(nominal.clone(), f64::INFINITY)?];
-        for most in rungs.iter().filter(|most| **most < self.problem.tip_path.largest_tolerance()) {
-            motions.push(self.tightened(nominal.clone(), *most)?);
+    /// Returns a motion shortened within the tolerance band and, if that changes it, within `parts` of the band and as it is.
+    fn shortened(&mut self, nominal: JointWaypoints, parts: bool) -> Result<Vec<NominalMotion>> {
+        let widest = self.tightened(nominal.clone(), f64::INFINITY)?;
+        let is_shorter = largest_difference(&widest.rows, &nominal.rows) > SAME;
+        let mut motions = vec![NominalMotion::whole(widest)];
+        match (is_shorter, parts) {
+            (false, _) => {}
+            (true, false) => motions.push(NominalMotion::whole(nominal)),
+            (true, true) => motions.extend(self.within_parts(nominal)?),
         }
-        if largest_difference(&motions[0].rows, &nominal.rows) > SAME {
-            motions.push(nominal);
-        }
-        Ok(motions.into_iter().map(NominalMotion::whole).collect())
+        Ok(motions)
     }
 
     /// Returns a motion shortened within the tolerance band, or `most` of it (m, rad).
@@ -139,7 +144,7 @@ impl<'a> NominalMotions<'a> {
         let PathProblem { robot, tip_path, options, .. } = self.problem;
         let mut starts = robot.random_configurations(STARTS, &mut rng::stream(options.seed, 0))?;
         starts.extend(self.branches(0.0)?);
-        // Where the path begins at a singularity, one configuration stands there for a family.
+        // Starts midway too: where the path begins at a singularity, the closed form returns one configuration of a family.
         let knots = tip_path.knots(INTERVALS);
         let middle = knots[knots.len() / 2];
         let midway = self.branches(middle)?;
@@ -150,7 +155,7 @@ impl<'a> NominalMotions<'a> {
                 let knot = motion.knots.iter().position(|knot| *knot == start.0);
                 knot.is_some_and(|i| largest_difference(motion.row(i), start.1) < SAME)
             };
-            if self.forks || !found.iter().any(|(_, motion)| passes(motion)) {
+            if self.has_forked || !found.iter().any(|(_, motion)| passes(motion)) {
                 let motions = self.each_way(start, leading);
                 found.extend(motions.map(|motion| (travel(&motion.rows, robot.dof()), motion)));
             }
@@ -162,14 +167,17 @@ impl<'a> NominalMotions<'a> {
         Ok(self.different(found.into_iter().map(|(_, motion)| motion)))
     }
 
-    /// Returns the first motions with different ends; one that is turned by whole turns is the same.
+    /// Returns the first motions whose ends are apart by more than whole turns.
     fn different(&self, motions: impl Iterator<Item = JointWaypoints>) -> Vec<JointWaypoints> {
         let turns = OpenTurns { robot: &self.problem.robot, limits: &self.projection.bounds };
         let mut kept: Vec<JointWaypoints> = vec![];
         for motion in motions {
             let is_same = |other: &JointWaypoints| {
                 let ends = [(0, 0), (motion.knots.len() - 1, other.knots.len() - 1)];
-                ends.into_iter().all(|(i, k)| turns.difference(motion.row(i), other.row(k)) < APART)
+                let is_near = |one: &[f64], other: &[f64]| {
+                    largest_difference(one, other) < APART || turns.difference(one, other) < SAME
+                };
+                ends.into_iter().all(|(i, k)| is_near(motion.row(i), other.row(k)))
             };
             if kept.len() < BRANCHES && !kept.iter().any(is_same) {
                 kept.push(motion);
@@ -207,9 +215,11 @@ impl<'a> NominalMotions<'a> {
     }
 
     /// The motions that follow the path through near `start`, a path parameter and a configuration there: back from a
-    /// singularity, and through it if there are forks.
+    /// singularity, and through it where it forks.
     fn each_way(&mut self, start: (f64, &[f64]), leading: Leading) -> impl Iterator<Item = JointWaypoints> + use<> {
+        self.forks = false;
         let back = self.walked(start, leading, false);
+        self.has_forked |= self.forks;
         let through = if self.forks { self.walked(start, leading, true) } else { None };
         back.into_iter().chain(through)
     }

@@ -73,8 +73,9 @@ impl RoundedPath {
 /// Alternatives at the corners of a path that took much longer than others on an earlier motion along it.
 #[derive(Debug, Default)]
 pub(super) struct SlowCorners {
+    /// Whether stopping did.
     stopped: bool,
-    /// The number of the rounded path at which the search ended; narrower ones are slower still.
+    /// Number of the first rounded path that did, if any: it and narrower ones are not tried again.
     rounded: Option<usize>,
 }
 
@@ -172,7 +173,7 @@ impl<'a> PathProblem<'a> {
             let interpolation = on(&rounded.path, Corners::Passed, accuracy.min(rounded.most) - rounded.off);
             let Some(start) = interpolation.moved(nominal.clone()) else { continue };
             let duration = timed(interpolation, start)?;
-            // The narrower, the slower: what is no quicker than before ends the search.
+            // The narrower, the slower: one slower than the one before ends the search.
             if duration > of_wider {
                 ended = Some((number, duration));
                 break;

@@ -18,7 +18,7 @@ pub(super) struct PathWalk<'w, 'a> {
     pub projection: &'w mut Projection<'a>,
     /// Whether the joints go on as before where another branch lies ahead of them: through a singularity, not back from it.
     pub straight_on: bool,
-    /// Set where another branch lies ahead.
+    /// Set where another configuration lies ahead than the nearest one.
     pub forks: &'w mut bool,
 }
 
@@ -36,7 +36,10 @@ impl PathWalk<'_, '_> {
     /// `from`; `None` where that is not on the path, or the path leads no farther.
     pub fn along(&mut self, knots: &[f64], from: f64, start: &[f64]) -> Option<JointWaypoints> {
         let mut first = start.to_vec();
-        self.is_met(from, &mut first).then(|| self.on_from(knots, from, first))?
+        if !self.is_met(from, &mut first) {
+            return None;
+        }
+        self.on_from(knots, from, first)
     }
 
     /// Walks both ways from a configuration on the path.

@@ -14,8 +14,8 @@ use crate::solver::{Monitor, Status, Stop};
 /// Most evaluations of the search: pattern search mostly ends by itself after 100 to 250, another solver uses them all.
 const EVALUATIONS: usize = 2000;
 
-/// A motion is not timed if its rough duration exceeds that of another one by this factor: it is never much too long, and too short where
-/// torques limit the motion.
+/// A motion is not timed if its rough duration exceeds that of the best one by this factor: both are too long, or too short where torques
+/// limit the motion, by about as much.
 const HOPELESS: f64 = 1.05;
 
 /// The same factor for a motion that is shortened within the whole tolerance band, before parts of the band are tried.
@@ -23,6 +23,9 @@ const PROMISING: f64 = 1.25;
 
 /// What finer grids of the timing save, in terms of what the last halving saved: measured 1.0 to 1.2.
 const STILL_SAVED: f64 = 1.5;
+
+/// Least number of waypoints for that.
+const MANY: usize = 300;
 
 /// The part of the duration that halving saves on a grid that is fine enough to tell.
 const TELLING: f64 = 0.01;
@@ -64,8 +67,9 @@ struct TimedCandidates<'p> {
     bases: Vec<(f64, JointWaypoints)>,
     /// Alternatives at corners that are not worth trying on further motions.
     slow: SlowCorners,
-    /// The least cost of those that keep everything.
+    /// The least cost of those that keep everything, and its rough duration (s): rough ones compare with each other.
     least: f64,
+    rough_least: f64,
     /// The reason why joints cannot hold the arm on the first motion that is refused for it.
     refused: Option<Error>,
 }
@@ -73,7 +77,7 @@ struct TimedCandidates<'p> {
 impl<'p> TimedCandidates<'p> {
     fn new(problem: &'p PathProblem<'p>) -> Self {
         let (slow, least) = (SlowCorners::default(), f64::INFINITY);
-        Self { problem, candidates: vec![], bases: vec![], slow, least, refused: None }
+        Self { problem, candidates: vec![], bases: vec![], slow, least, rough_least: least, refused: None }
     }
 
     /// Times motions, but none that is hopeless beside another one.
@@ -83,8 +87,9 @@ impl<'p> TimedCandidates<'p> {
     fn add(&mut self, motions: Vec<NominalMotion>) -> Result<()> {
         let problem = self.problem;
         for Nominal { roughly, interpolation, waypoints, base } in nominals(problem, motions, &mut self.slow)? {
+            let base = base.filter(|_| problem.options.objective == Cost::Time);
             self.bases.extend(base.map(|base| (roughly, base)));
-            if roughly > HOPELESS * self.least
+            if roughly > HOPELESS * self.rough_least
                 || stays_slower(problem, (roughly, self.least), &interpolation, &waypoints)?
             {
                 continue;
@@ -92,10 +97,12 @@ impl<'p> TimedCandidates<'p> {
             match problem.motion_if_held(&interpolation, waypoints.clone())? {
                 Ok(motion) => {
                     let plan = problem.plan(motion);
-                    self.least = if plan.violations.is_empty() { self.least.min(plan.cost) } else { self.least };
+                    if plan.violations.is_empty() && plan.cost < self.least {
+                        (self.least, self.rough_least) = (plan.cost, roughly);
+                    }
                     self.candidates.push(Candidate { plan, interpolation, waypoints });
                 }
-                Err(heavy) => self.refused = self.refused.take().or(Some(heavy)),
+                Err(heavy) => _ = self.refused.get_or_insert(heavy),
             }
         }
         Ok(())
@@ -104,7 +111,7 @@ impl<'p> TimedCandidates<'p> {
     /// Takes the unshortened motions that may be the quickest in part of the tolerance band: a wide one is not always
     /// used well.
     fn promising_bases(&mut self) -> Vec<JointWaypoints> {
-        let most = PROMISING * self.least;
+        let most = PROMISING * self.rough_least;
         let bases = std::mem::take(&mut self.bases).into_iter();
         bases.filter_map(|(roughly, base)| (roughly <= most).then_some(base)).collect()
     }
@@ -137,19 +144,20 @@ fn nominals<'p>(
     Ok(all)
 }
 
-/// Whether a motion would take longer than the `least` duration of a plan on finer grids too, by what halving its grid saved. Under jerk
-/// limits that is not known.
+/// Whether a motion would take longer than the `least` duration of a plan on finer grids too, by what halving its grid saved. That is not
+/// known under jerk limits, nor of few waypoints, which are timed at once anyway.
 fn stays_slower(
     problem: &PathProblem<'_>,
     (roughly, least): (f64, f64),
     interpolation: &Interpolation<'_>,
     waypoints: &JointWaypoints,
 ) -> Result<bool> {
-    if roughly <= least || problem.limits.limit_jerk() {
+    let is_known = waypoints.knots.len() >= MANY && !problem.limits.limit_jerk();
+    if roughly <= least || !is_known {
         return Ok(false);
     }
     let saved = problem.coarser_duration(interpolation, waypoints)? - roughly;
-    Ok(saved < TELLING * roughly && roughly - STILL_SAVED * saved > least)
+    Ok((0.0..TELLING * roughly).contains(&saved) && roughly - STILL_SAVED * saved > least)
 }
 
 /// A motion along the path to search around, and its plan.
