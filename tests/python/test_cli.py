@@ -403,3 +403,7 @@ def test_a_track_with_a_payload_keeps_the_torques_of_the_file() -> None:
         "Error: track cannot honour torque limits: joint 'panda_joint1' may change its velocity at once, which takes "
         "any torque: give --acceleration-limit"
     )
+    ends = ("--start-q=0,-1.5,1.5,0,0,0", "--end-q=1,-1,1,0,0,0", "--acceleration-limit", "5")
+    assert refused("plan", "point-to-point", "ur5e", *ends, "--torque-limits").startswith(
+        "Error: robot 'ur5e' has no dynamics: no link has a mass"
+    )

@@ -290,5 +290,11 @@ def loaded(arm: Robot, payload: float | None, torque_limits: bool) -> tuple[Robo
     """Returns the robot with its payload, and its torque limits if they are to be kept."""
     if payload is not None and not torque_limits:
         raise InvalidInputError("--payload counts only where torques are limited: use --torque-limits too")
+    if not torque_limits:
+        return arm, None
     carrying = arm if payload is None else arm.with_payload(payload)
-    return carrying, carrying.torque_limit if torque_limits else None
+    if not carrying.has_dynamics:
+        carrying.torques([0.0] * carrying.dof)  # raises the reason
+    if not any(map(math.isfinite, carrying.torque_limit)):
+        raise InvalidInputError(f"--torque-limits: no joint of robot '{arm.name}' has an effort; its file gives it")
+    return carrying, carrying.torque_limit
