@@ -7,10 +7,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import count
+from types import FrameType
 
 EVERY = 0.01  # s of computing, on all threads together
 MOST = 100  # signals between two looks for them: 0.2 s are promised, and some machines are five times as slow
 TURNS, LOOKS = 10, 1000
+CALLBACK = "_remove"  # of weak references, which swallows exceptions: a look in it is none
 
 
 @contextmanager
@@ -20,7 +22,12 @@ def signals(look: Callable[[], None], pipe: int) -> Iterator[None]:
     Python calls `look` when the main thread looks for signals; bytes come at once. No signals come while the process
     waits for its turn on a busy machine.
     """
-    handler, earlier = signal.signal(signal.SIGPROF, lambda *_: look()), signal.set_wakeup_fd(pipe)
+
+    def handle(_: int, frame: FrameType | None) -> None:
+        if frame is None or frame.f_code.co_name != CALLBACK:
+            look()
+
+    handler, earlier = signal.signal(signal.SIGPROF, handle), signal.set_wakeup_fd(pipe)
     signal.setitimer(signal.ITIMER_PROF, EVERY, EVERY)
     try:
         yield
