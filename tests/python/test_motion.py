@@ -152,3 +152,20 @@ def test_a_plan_under_jerk_limits_from_the_command_line() -> None:
     )
     assert smooth["success"]
     assert smooth["cost"] != quick["cost"]
+
+
+def test_joints_limited_on_one_side_follow_a_path() -> None:
+    joints, parent = "", "base"
+    for i, axis in enumerate(("1 0 0", "0 1 0", "0 0 1", "1 0 0")):
+        joints += (
+            f"<link name='l{i}'/><joint name='j{i}' type='continuous'><parent link='{parent}'/><child link='l{i}'/>"
+            f"<origin xyz='0.3 0 0'/><axis xyz='{axis}'/><limit velocity='2' effort='50'/></joint>"
+        )
+        parent = f"l{i}"
+    robot = bik.Robot.from_urdf(f"<robot name='arm'><link name='base'/>{joints}</robot>")
+    poses = robot.fk(np.array([0.3, 0.5, -0.4, 0.2]) + np.linspace(0, 8, 80)[:, None] * np.array([1, 0.5, 0.3, 1]))
+    for upper in (np.inf, 3.0, [np.inf, 3.0, np.inf, np.inf]):
+        limits = bik.Limits(velocity=2.0, acceleration=8.0, lower=-np.inf, upper=upper)
+        plan = bik.plan_along_path(robot, poses, limits=limits)
+        assert plan.success, plan.message
+        assert (plan.trajectory.q <= np.asarray(upper) + 1e-9).all()
