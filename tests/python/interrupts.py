@@ -12,7 +12,7 @@ from types import FrameType
 EVERY = 0.01  # s of computing, on all threads together
 MOST = 100  # signals between two looks for them: 0.2 s are promised, and some machines are five times as slow
 TURNS, LOOKS = 10, 1000
-CALLBACK = "_remove"  # of weak references, which swallows exceptions: a look in it is none
+CALLBACKS = {"_remove", "remove", "cb"}  # of weak references, which swallow exceptions: a look in one is none
 
 
 @contextmanager
@@ -24,7 +24,11 @@ def signals(look: Callable[[], None], pipe: int) -> Iterator[None]:
     """
 
     def handle(_: int, frame: FrameType | None) -> None:
-        if frame is None or frame.f_code.co_name != CALLBACK:
+        names = set()
+        while frame is not None:
+            names.add(frame.f_code.co_name)
+            frame = frame.f_back
+        if not names & CALLBACKS:
             look()
 
     handler, earlier = signal.signal(signal.SIGPROF, handle), signal.set_wakeup_fd(pipe)
