@@ -4388,6 +4388,7 @@ def plan_moves(
     moves: Iterable[Move],
     *,
     start_q: ArrayLike,
+    task: Task | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,

@@ -1,6 +1,7 @@
 //! What the arm does from one stop to the next: joint moves and paths of the tip, joined by rounded corners.
 
 use super::joint_corner::JointCorner;
+use super::move_task::{MoveTask, TURN_ACCURACY};
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::math::cubic_spline::SplineEnds;
@@ -69,6 +70,7 @@ impl<'a> Run<'a> {
     /// None in practice: the parts differ.
     pub fn rounded(
         robot: &Robot,
+        task: &MoveTask,
         limits: &ConstantLimits,
         parts: &[RunPart<'a>],
         radii: &[f64],
@@ -88,7 +90,7 @@ impl<'a> Run<'a> {
         while intervals <= MOST_INTERVALS {
             let mut run = Self::through(parts, &corners, intervals)?;
             run.path = run.path.inside(&limits.lower, &limits.upper);
-            if run.is_accurate(robot) {
+            if run.is_accurate(robot, task) {
                 return Ok(Some(run));
             }
             intervals *= 2;
@@ -138,7 +140,7 @@ impl<'a> Run<'a> {
     }
 
     /// Whether the tip stays on its paths between knots.
-    fn is_accurate(&self, robot: &Robot) -> bool {
+    fn is_accurate(&self, robot: &Robot, task: &MoveTask) -> bool {
         let mut q = Point::from_elem(0.0, robot.dof());
         self.parts.iter().zip(&self.windows).all(|(part, window)| {
             let Some(tool_path) = part.tool_path else { return true };
@@ -149,7 +151,11 @@ impl<'a> Run<'a> {
                 }
                 self.path.position(s, &mut q);
                 let target = tool_path.pose(window.from + s - window.begin);
-                distance(&robot.tip_position(&q), &target.origin) <= ACCURACY
+                if task.is_whole() {
+                    return distance(&robot.tip_position(&q), &target.origin) <= ACCURACY;
+                }
+                let [distance, angle] = task.target(&target).off(&robot.tip(&q));
+                distance <= ACCURACY && angle <= TURN_ACCURACY
             })
         })
     }
