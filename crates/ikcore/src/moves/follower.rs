@@ -225,12 +225,13 @@ impl<'a> Follower<'a> {
     ) -> Result<Result<JointPath, Stray>> {
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut coarse = vec![];
+        let [lower, upper] = self.task.path_limits(limits);
         if let Some(at) = track.rest() {
             return Ok(Err(Stray::Still { at }));
         }
         for _ in 0..ROUNDS {
             let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?
-                .inside(&limits.lower, &limits.upper);
+                .inside(&lower, &upper);
             coarse.clear();
             for i in 0..track.knots.len() - 1 {
                 checkpoint_at(i)?;

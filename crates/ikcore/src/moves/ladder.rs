@@ -26,6 +26,8 @@ const MOST_RUNGS: usize = 24;
 /// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
 const MOST_FOLLOWED: usize = 48;
 const ENOUGH: usize = 6;
+/// The same where the task leaves a part of the pose free: the nearest ones are directions of one branch.
+const ENOUGH_FREE: usize = 24;
 
 /// Configurations that the self-motion is led to, and those at a pose that are led so, where no path is followed without.
 const MOST_LED_TO: usize = 12;
@@ -200,8 +202,9 @@ impl<'a> Ladder<'a> {
                     Ok(candidates) => candidates,
                     Err(why) => return Ok(Err(Dead::Goal(why))),
                 };
+                let enough = if self.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
                 for candidate in candidates.iter().take(MOST_FOLLOWED) {
-                    if self.is_redundant && rungs.len() >= ENOUGH {
+                    if self.is_redundant && rungs.len() >= enough {
                         break;
                     }
                     match self.placed(candidate, paths, before) {

@@ -90,10 +90,11 @@ impl<'a> Run<'a> {
             };
             corners.push(corner);
         }
+        let [lower, upper] = task.path_limits(limits);
         let mut intervals = INTERVALS;
         while intervals <= MOST_INTERVALS {
             let mut run = Self::through(parts, &corners, intervals)?;
-            run.path = run.path.inside(&limits.lower, &limits.upper);
+            run.path = run.path.inside(&lower, &upper);
             if run.is_accurate(robot, task) {
                 return Ok(Some(run));
             }
