@@ -125,10 +125,28 @@ impl<'a> Follower<'a> {
     /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
     /// move as little as they can.
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
+        let widened = self.bounds_from(q);
+        // A joint at its limit moves off it where the task leaves it the freedom: a motion along a limit swings beyond.
+        if !self.task.is_whole() && !self.bounds.contains(q) {
+            let inside = self.bounds.clone();
+            if let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside]) {
+                return Ok(track);
+            }
+        }
+        self.follow_within(path, q, lead, [&widened, &widened])
+    }
+
+    /// Follows the path from `q` in the box `first`, and from there on in the box `then`.
+    fn follow_within(
+        &mut self,
+        path: &ToolPath,
+        q: &[f64],
+        lead: Option<&Lead<'_>>,
+        [first, then]: [&Bounds; 2],
+    ) -> Result<Track, Lost> {
         let mut track = Track { knots: vec![0.0], rows: q.to_vec() };
         let mut before = Point::from_slice(q);
-        let bounds = self.bounds_from(q);
-        if !self.project(&self.target(path, 0.0), &mut before, &bounds) {
+        if !self.project(&self.target(path, 0.0), &mut before, first) {
             return Err(Lost { at: 0.0 });
         }
         track.rows.copy_from_slice(&before);
@@ -136,7 +154,7 @@ impl<'a> Follower<'a> {
             let end = begin + piece.length;
             let longest = LONGEST_STEP.min(PART_OF_TURN * piece.length_per_turn());
             let even = piece.length / (piece.length / longest).ceil().max(2.0);
-            self.follow_piece(path, [*begin, end, even], lead, &bounds, &mut track)?;
+            self.follow_piece(path, [*begin, end, even], lead, then, &mut track)?;
         }
         Ok(track)
     }
@@ -164,12 +182,11 @@ impl<'a> Follower<'a> {
             if let Some(lead) = lead {
                 let part = 1.0 - (-(next - at) / lead.within).exp();
                 q.iter_mut().zip(lead.toward).for_each(|(q, toward)| *q += part * (toward - *q));
-                bounds.clip(&mut q);
             } else if last > 0 {
                 let stretch = (next - at) / (track.knots[last] - track.knots[last - 1]);
                 q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
-                bounds.clip(&mut q);
             }
+            bounds.clip(&mut q);
             let expected = q.clone();
             if self.project(&self.target(path, next), &mut q, bounds)
                 && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE
@@ -225,13 +242,12 @@ impl<'a> Follower<'a> {
     ) -> Result<Result<JointPath, Stray>> {
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut coarse = vec![];
-        let [lower, upper] = self.task.path_limits(limits);
         if let Some(at) = track.rest() {
             return Ok(Err(Stray::Still { at }));
         }
         for _ in 0..ROUNDS {
             let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?
-                .inside(&lower, &upper);
+                .inside(&limits.lower, &limits.upper);
             coarse.clear();
             for i in 0..track.knots.len() - 1 {
                 checkpoint_at(i)?;

@@ -8,16 +8,11 @@ use crate::along_path::{PathTarget, ToleranceBand};
 use crate::error::{Error, Result};
 use crate::math::{Frame, Pose};
 use crate::task::{Components, Target, Task, TaskKind};
-use crate::timing::ConstantLimits;
 use crate::wording::number;
 
 /// Angle (rad) and distance (m) that a motion may be off its task: smaller tolerances are refused.
 pub(super) const TURN_ACCURACY: f64 = 5e-5;
 const ACCURACY: f64 = 1e-5;
-
-/// Distance (rad, m) from limits at which a path stays where the task leaves it room: a motion under jerk limits swings about its path by some
-/// 1e-8.
-const ROOM: f64 = 1e-7;
 
 /// Directions about the axis of a pointing task that configurations are looked for at.
 const SPINS: usize = 16;
@@ -72,11 +67,6 @@ impl MoveTask {
     /// The angle (rad) by which the tip has to turn between two poses if it is to meet both without a tolerance.
     pub fn turn_between(&self, from: &Frame, to: &Frame) -> f64 {
         self.exact().target(to).off(from)[1]
-    }
-
-    /// The position limits of paths.
-    pub fn path_limits(&self, limits: &ConstantLimits) -> [Vec<f64>; 2] {
-        limits.inset_positions(if self.is_whole() { 0.0 } else { ROOM })
     }
 
     /// Whether whole poses have to be met.

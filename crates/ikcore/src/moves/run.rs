@@ -90,11 +90,10 @@ impl<'a> Run<'a> {
             };
             corners.push(corner);
         }
-        let [lower, upper] = task.path_limits(limits);
         let mut intervals = INTERVALS;
         while intervals <= MOST_INTERVALS {
             let mut run = Self::through(parts, &corners, intervals)?;
-            run.path = run.path.inside(&lower, &upper);
+            run.path = run.path.inside(&limits.lower, &limits.upper);
             if run.is_accurate(robot, task) {
                 return Ok(Some(run));
             }
