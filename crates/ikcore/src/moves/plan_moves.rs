@@ -49,7 +49,7 @@ pub fn plan_moves(
     limits.require_accelerations(METHOD)?;
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let space = options.surroundings.clear_space(robot)?;
-    let around = MoveSurroundings { robot, space: space.as_ref(), keeps: &options.keeps };
+    let around = MoveSurroundings { robot, limits: &limits, space: space.as_ref(), keeps: &options.keeps };
     let inside = limits.position_limits(robot)?;
     let admitted = |what: &str, q: &[f64]| -> Result<Vec<f64>> {
         let q = inside.admit_start(Some(robot), what, q, &StartSlack::NONE)?.q;
@@ -66,14 +66,14 @@ pub fn plan_moves(
         seed: options.seed,
         ..SolveOptions::default()
     };
-    let mut ladder = Ladder::new(around, &limits, each.clone());
+    let mut ladder = Ladder::new(around, each.clone());
     let climber = Climber { robot, limits: &limits, moves, blocks: &blocks, each };
     let rungs = match ladder.climb(&blocks, &start, monitor)? {
         Ok(rungs) => rungs,
         Err((block, dead)) => return Err(climber.no_way(block, dead, monitor)?),
     };
     let paths = climber.refined(&mut ladder, &rungs, monitor)?;
-    let mut assembly = Assembly::new(around, &limits, moves, options, &start);
+    let mut assembly = Assembly::new(around, moves, options, &start);
     assembly.add_all(&stages, &rungs, paths, monitor)?;
     let (trajectory, reports) = assembly.finish()?;
     let duration = trajectory.duration();
@@ -218,7 +218,7 @@ impl Climber<'_> {
 }
 
 /// The move at the length `at` of a path, and the length along that move.
-fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
+pub(super) fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
     let i = path.piece_at(at);
     let piece = &path.pieces[i];
     (piece.index, piece.from + at - path.breaks[i])

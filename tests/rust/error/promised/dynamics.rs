@@ -29,7 +29,7 @@ pub fn masses_and_torques() -> Vec<Row> {
         "Robot::with_inertias" ImpossibleInertia: panda.with_inertias([("flange", point(-1.0))]), "inertia of link 'flange': the mass is -1 kg: it cannot be negative";
         "Robot::with_payload" UnknownLink: panda.with_payload(Some("hnd"), point(1.0)), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange";
         "Robot::with_payload" ImpossibleInertia: panda.with_payload(None, point(-1.0)), "payload: the mass is -1 kg: it cannot be negative";
-        "Robot::with_payload" SeveralTips: arms().with_payload(None, point(1.0)), "with_payload takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
+        "Robot::with_payload" SeveralTips: arms().with_payload(None, point(1.0)), "with_payload takes robots with one tip; this one has left_tool and right_tool: give the one that carries the payload as the link";
         "Robot::with_gravity" NotFinite: panda.with_gravity([0.0, 0.0, NAN]), "gravity must be finite, but entry 2 is NaN";
         "Inertia::require_possible" ImpossibleInertia: point(NAN).require_possible("hand"), "hand: mass, centre and inertia matrix must be finite, got NaN";
         "Robot::torques_all" NoDynamics: bare.torques_all(&motions(&[0.0; 6], None)), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";

@@ -49,7 +49,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";
         "Goal::validate" NoDynamics: least_torque(None).validate(&robot("ur5e"), false), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";
         "Goal::validate" WrongLength: least_torque(Some(vec![1.0])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque: expected 7 (one per joint), got 1";
-        "Goal::validate" OutOfRange: least_torque(Some(vec![0.0; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque, joint 'panda_joint1', must be positive, infinite for a joint that does not count, got 0";
+        "Goal::validate" OutOfRange: least_torque(Some(vec![0.0; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque, entry 0, must be positive, infinite for a joint that does not count, got 0";
         "Goal::validate" Contradiction: least_torque(Some(vec![f64::INFINITY; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque is infinite for all joints: none would count";
         "Algorithm::validate" OutOfRange: Algorithm::from(NewtonRaphson { step_fraction: 0.0 }).validate(), "step_fraction must be above 0 and at most 1, got 0";
         "DerivativeFree::validate" OutOfRange: DerivativeFree::from(Bas { c1: 0.0, ..Bas::default() }).validate(), "c1 must be positive and finite, got 0";
