@@ -449,3 +449,21 @@ def test_moves_show_what_they_were_made_of() -> None:
     assert Joints([0.0, 1.0]) != Joints([0.0, 1.5])
     with pytest.raises(Invalid, match=r"moves.1. must be one of beetle_ik.moves, got"):
         bik.plan_moves(UR5, [SLOW, "down"], start_q=HOME, limits=LIMITS)  # type: ignore[list-item]
+
+
+def test_a_huge_arm_keeps_the_speed_of_a_short_line_before_a_blend() -> None:
+    # The corner of the joints is long beside the line, and its spline rang into it: 0.36 % too fast.
+    a, d = 300.0 * np.array([0.0, -0.425, -0.392, 0.0, 0.0, 0.0]), 300.0 * np.array([0.089, 0, 0, 0.109, 0.095, 0.082])
+    alpha = [np.pi / 2, 0.0, 0.0, np.pi / 2, -np.pi / 2, 0.0]
+    with pytest.warns(bik.UnitsWarning):
+        huge = bik.Robot.from_dh(a=a, alpha=alpha, d=d, convention="standard", velocity=np.ones(6))
+    q = np.array([0.3, -1.5, 1.8, -1.9, -1.2, 0.3])
+    begin, end = huge.fk(q), huge.fk(q)
+    end[0, 3] -= 0.01
+    away = np.array([0.07, -0.03, 0.04, 0.05, 0.02, -0.004])
+    program = [Line(end, speed=0.01, blend=0.002), Joints(q + away)]
+    plan = bik.plan_moves(huge, program, start_q=q, limits=bik.Limits(acceleration=4.0))
+    tip = huge.fk(plan.trajectory.at(np.linspace(0.0, plan.moves[0].end, 4001))[0])[:, :3, 3]
+    before_blend = np.linalg.norm(tip - begin[:3, 3], axis=1) < 0.0079
+    speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * 4000 / plan.moves[0].end
+    assert speed[before_blend[1:]].max() == pytest.approx(0.01, rel=2e-4)

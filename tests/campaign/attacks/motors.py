@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import arms
-from ..attack import Attack, BrokenError, Case
+from ..attack import RESTS, Attack, BrokenError, Case
 from .dynamics import body, urdf
 
 AIMS = 5
@@ -75,7 +75,7 @@ class TrackedTorques(Attack):
         ulps = 32 * np.spacing(np.abs(q).max(axis=1) + 1.0)
         qd = np.diff(q, axis=0) / dt
         # A joint that moves by rounding alone rests: dry friction has no direction there.
-        qd[np.abs(qd) <= ulps[1:, None] / dt] = 0.0
+        qd[np.abs(qd) <= np.maximum(ulps[1:, None], RESTS) / dt] = 0.0
         qdd = np.diff(qd, axis=0) / dt
         unknown, before = False, left["robot"]
         for i, (status, robot) in enumerate(zip(left["statuses"], left["carried"], strict=True)):

@@ -18,6 +18,10 @@ const LINE_INTERVALS: usize = 6;
 
 /// Largest distance of the tip from its path (m) beside a corner.
 const ACCURACY: f64 = 5e-6;
+/// The same relative to the length between knots where a speed is asked for, so that the speed of the tip is that of the parameter; and
+/// the distance (m) that counts as none.
+const SLOPE_ACCURACY: f64 = 1e-4;
+const NOTHING: f64 = 1e-9;
 
 /// A part of a run.
 #[derive(Debug, Clone)]
@@ -109,7 +113,14 @@ impl<'a> Run<'a> {
             let to = corners.get(i).map_or(end, |corner| corner.left);
             let window = Window { begin: at, from, to };
             let mut before = from;
-            for s in knots_of(part, from, to) {
+            // The spline rings beside a corner, by less the finer its knots are there; most runs do without.
+            let beside = |corner: Option<&JointCorner>| {
+                corner
+                    .filter(|_| intervals > INTERVALS)
+                    .map_or(f64::INFINITY, |corner| corner.length / intervals as f64)
+            };
+            let spacings = [beside(i.checked_sub(1).and_then(|before| corners.get(before))), beside(corners.get(i))];
+            for s in knots_of(part, [from, to], spacings) {
                 path.position(s, &mut q);
                 if s > from {
                     speeds.push(path.largest_speed(path.locate(0.5 * (before + s)).0));
@@ -148,15 +159,18 @@ impl<'a> Run<'a> {
                     return true;
                 }
                 self.path.position(s, &mut q);
-                let target = tool_path.pose(window.from + s - window.begin);
-                distance(&robot.tip_position(&q), &target.origin) <= ACCURACY
+                let at = window.from + s - window.begin;
+                let has_speed = tool_path.pieces[tool_path.piece_at(at)].speed.is_some();
+                let by_slope = if has_speed { SLOPE_ACCURACY * (ends[1] - ends[0]) } else { ACCURACY };
+                distance(&robot.tip_position(&q), &tool_path.pose(at).origin) <= by_slope.clamp(NOTHING, ACCURACY)
             })
         })
     }
 }
 
-/// Parameters of a part at which a run takes it over, from `from` to `to`.
-fn knots_of(part: &RunPart<'_>, from: f64, to: f64) -> Vec<f64> {
+/// Parameters of a part at which a run takes it over, from `from` to `to`. Those of a path of the tip become as dense towards its ends as
+/// `spacings`.
+fn knots_of(part: &RunPart<'_>, [from, to]: [f64; 2], [first, last]: [f64; 2]) -> Vec<f64> {
     let mut knots = vec![from];
     if to <= from {
         // Its corners take all of it.
@@ -165,9 +179,21 @@ fn knots_of(part: &RunPart<'_>, from: f64, to: f64) -> Vec<f64> {
     if part.tool_path.is_some() {
         let spare = 1e-3 * (to - from) / part.path.pieces() as f64;
         knots.extend(part.path.breaks().iter().copied().filter(|s| *s > from + spare && *s < to - spare));
+        let [after_first, before_last] = [knots.get(1).unwrap_or(&to), knots.last().unwrap_or(&from)];
+        let [into, out] = [0.5 * (after_first - from), 0.5 * (to - before_last)];
+        let dense: Vec<f64> =
+            doubling(first, into).map(|s| from + s).chain(doubling(last, out).map(|s| to - s)).collect();
+        knots.extend(dense);
+        knots.sort_by(f64::total_cmp);
+        knots.dedup_by(|next, before| *next - *before < spare);
     } else {
         knots.extend((1..LINE_INTERVALS).map(|i| from + (to - from) * i as f64 / LINE_INTERVALS as f64));
     }
     knots.push(to);
     knots
+}
+
+/// Distances whose differences double, from `first` up to `most`.
+fn doubling(first: f64, most: f64) -> impl Iterator<Item = f64> {
+    (1..).map(move |k| first * (2.0_f64.powi(k) - 1.0)).take_while(move |s| *s < most)
 }
