@@ -214,12 +214,13 @@ def test_breaks_leave_out_what_cannot_be_held() -> None:
     here = PANDA.fk([0, -0.5, 0, -2.2, 0, 1.8, 0.8])
     path = np.array([bik.pose([x, 0, 0]) @ here for x in np.linspace(0, 0.3, 40)])
     given = bik.Limits(acceleration=RATED, torque=0.5 * PANDA.torque_limit)
-    with pytest.raises(bik.InfeasibleError, match="joint 'panda_joint2' needs .* N m to hold the arm"):
+    with pytest.raises(bik.InfeasibleError, match=r"joint 'panda_joint2' needs .* N m to hold the arm"):
         bik.plan_along_path(PANDA, path, limits=given)
     plan = bik.plan_along_path(PANDA, path, limits=given, breaks=True)
     assert plan.success, plan.message
     (only,) = plan.breaks
-    assert 5 < only.at < 39 and only.until == 39
+    assert 5 < only.at < 39
+    assert only.until == 39
     assert "joint 'panda_joint2' needs" in only.reason
     share = np.abs(plan.torques(np.linspace(0, plan.trajectory.duration, 2000))) / given.torque
     assert share.max() <= 1 + 1e-9
@@ -236,7 +237,7 @@ def test_a_start_velocity_is_braked_as_mildly_as_the_motors_need() -> None:
     share = np.abs(plan.torques(np.linspace(0, plan.trajectory.duration, 2000))) / motors
     assert share.max() <= 1 + 1e-9
     np.testing.assert_allclose(plan.trajectory.at(0.0)[1], qd)
-    expected = "cannot stop within the limits of its tips or torques: in the easiest stop found, torque of joint 'panda_"
+    expected = r"in the easiest stop found, torque of joint 'panda_joint2' is .* N m, allowed 60.90 N m"
     falling = [0, 2.0, 0, 2.0, 0, 0, 0]
     with pytest.raises(bik.InfeasibleError, match=expected):
         bik.plan_point_to_point(PANDA, start_q=[0, 0.3, 0, -1.6, 0, 1.8, 0.8], end_q=q, start_qd=falling, limits=given)

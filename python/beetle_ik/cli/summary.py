@@ -55,7 +55,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
 
 
 def carried(robot: Robot, limits: Limits) -> dict[str, Any]:
-    """Returns the mass of the payload (kg) and the torque limits of a motion within torque limits; an empty dict for other motions."""
+    """Returns payload (kg) and torque limits of a motion within torque limits; an empty dict for other motions."""
     if limits.torque is None:
         return {}
     return {"payload": sum(payload.mass for payload in robot.payloads), "torque_limit": limits.torque}

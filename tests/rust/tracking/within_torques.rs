@@ -469,7 +469,7 @@ fn an_arm_leaves_where_it_cannot_be_held() {
         for tick in 0..1000 {
             session.step(&here, &mut Unattended).unwrap();
             let excess = judge.note(session.q());
-            assert!(excess <= (before.max(1.0) - 1.0 + 0.02) * limit + 1e-9, "{excess} in tick {tick} with {jerk:?}");
+            assert!(excess <= (grasped - 1.0 + 0.02) * limit + 1e-9, "{excess} in tick {tick} with {jerk:?}");
             let now = holding(&session, &loaded);
             assert!(now <= before.max(1.0) + 1e-9, "{now} after {before} in tick {tick} with {jerk:?}");
             before = now;

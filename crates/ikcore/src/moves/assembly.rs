@@ -4,7 +4,6 @@ use super::around::{ADVICE_HOLD, MoveSurroundings};
 use super::ladder::Rung;
 use super::moves_options::MovesOptions;
 use super::outline::{Stage, StageKind};
-use super::plan_moves::place_on;
 use super::program::Move;
 use super::report::{bounds_on, speed_on, tip_speed};
 use super::run::{Run, RunPart};
@@ -148,7 +147,7 @@ impl<'a> Assembly<'a> {
         let Some((s, heavy)) = { places }.find_map(heavy) else { return self.not_found(part.index, problem) };
         let (index, place) = match part.tool_path {
             Some(tool_path) => {
-                let (index, along) = place_on(tool_path, s);
+                let (index, along) = tool_path.place_on_move(s);
                 (index, format!("{} m along it", number(along)))
             }
             None => (part.index, "on the straight way of the joints".into()),

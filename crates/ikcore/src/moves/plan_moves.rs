@@ -143,7 +143,7 @@ impl Climber<'_> {
             }
             Dead::Path { path, at, cause } => (self.blocks[block].paths[path], at, cause),
         };
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let named = self.moves[index].named(index);
         let no_solution = match &cause {
             Cause::Blocked(_) => None,
@@ -179,7 +179,7 @@ impl Climber<'_> {
     /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
     /// and it is not proven that its end has none.
     fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
         let mut solutions = |s: f64| {
             let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
@@ -203,7 +203,7 @@ impl Climber<'_> {
                 near = middle;
             }
         }
-        Ok(Some((place_on(path, far).1, beyond.message())))
+        Ok(Some((path.place_on_move(far).1, beyond.message())))
     }
 
     fn advice(&self, block: usize) -> &'static str {
@@ -215,11 +215,4 @@ impl Climber<'_> {
             None => "begin with a joint move to a pose, so that the planner can choose the configuration",
         }
     }
-}
-
-/// The move at the length `at` of a path, and the length along that move.
-pub(super) fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
-    let i = path.piece_at(at);
-    let piece = &path.pieces[i];
-    (piece.index, piece.from + at - path.breaks[i])
 }

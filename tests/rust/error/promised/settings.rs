@@ -42,6 +42,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Task::validate" Contradiction: weighed(TaskKind::Pose, &[0.0, 1.0, 1.0, 1.0, 1.0, 1.0]).unwrap().within(within()), "region keeps x, y and z of the base, but weights free some of x, y and z of the target: free all three or none, or take task Position, whose axes are the base's";
         "Task::with_first" Contradiction: Task::from(TaskKind::Position).with_first(First::Position), "task Position has no order of position and orientation ('position' first): take task Pose";
         "Task::target" WrongTarget: weighed(TaskKind::Orientation, &[1.0; 3]).unwrap().target(&Target::Position([0.0; 3])), "task Orientation needs a target pose (4, 4), got a position (3,)";
+        "Goal::validate_numbers" Contradiction: least_torque(Some(vec![f64::INFINITY; 7])).validate_numbers(), "relative_to of the goal LeastTorque is infinite for all joints: none would count";
         "Goal::validate_numbers" OutOfRange: Goal::Centring { weight: 0.0 }.validate_numbers(), "weight of a goal must be positive and finite, got 0";
         "Keep::new" Contradiction: kept(0, Some(unbounded)), "nothing would be kept: all tolerances of the task are infinite, or all its weights zero";
         "Keep::new" Contradiction: kept(0, Some(Task::from(TaskKind::Position).at_level(1))), "what is kept comes before all targets, at every instant: leave out the level of its task, 1";
