@@ -13,7 +13,6 @@ import numpy as np
 import beetle_ik as bik
 
 HEADER = "import numpy as np\nfrom numpy import inf, nan\n\nimport beetle_ik as bik\n\n"
-RESTS = 1e-12  # rad, m: a joint that moves less in a tick rests, but for rounding
 
 # Plain data: dicts with fixed keys, lists that may be shortened, tuples of fixed length, numbers, text, bytes.
 Case = dict[str, Any]

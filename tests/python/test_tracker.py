@@ -182,3 +182,15 @@ def test_a_dead_end_is_told_with_the_joint_that_holds_the_arm() -> None:
         ": recover=True lets the arm go to a configuration on it"
     )
     assert pickle.loads(pickle.dumps(step)).message == step.message
+
+
+def test_a_stop_of_thousands_of_turns_ends_when_it_says() -> None:
+    # A tick's worth of jerk is a hundred roundings of the position: each tick braked half a percent less than meant.
+    turntable = bik.Robot.from_dh(a=[0.0], alpha=[0.0], d=[0.0], velocity=[50.0])
+    limits = bik.Limits(acceleration=0.2, jerk=0.0032)
+    tracker = bik.Tracker(turntable, [0.0], dt=0.002, limits=limits)
+    tracker.reset([0.6], [25.0], [0.0])
+    for _ in range(round(tracker.stop() / tracker.dt) + 1):
+        step = tracker.step(None)
+    assert step.q[0] > 1000.0
+    assert step.qd[0] == 0.0

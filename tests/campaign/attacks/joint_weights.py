@@ -18,7 +18,7 @@ limits = bik.Limits(velocity=1.0)
 trackers = [bik.Tracker(robot, start, dt=0.01, limits=limits, joint_weights=one) for one in (weights, None)]
 ends = []
 for tracker in trackers:
-    for k in range(1, 161):
+    for k in range(1, 401):
         near = robot.fk(start)[:3, 3] + min(k / 30, 1.0) * np.array(by)
         step = tracker.step(near)
     ends.append(step)

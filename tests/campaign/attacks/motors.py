@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from .. import arms
-from ..attack import RESTS, Attack, BrokenError, Case
+from ..attack import Attack, BrokenError, Case
 from .dynamics import body, urdf
 
 AIMS = 5
 TICKS = 60
 RELATIVE = 1e-9
+RESTS = 1e-12  # rad, m: a joint that moves less in a tick rests, but for rounding
 
 TRACKED = """
 hold = np.abs(robot.torques(q[0]))

@@ -9,7 +9,7 @@ import numpy as np
 import beetle_ik as bik
 
 from .. import arms, typed
-from ..attack import RESTS, Attack, BrokenError, Case
+from ..attack import Attack, BrokenError, Case
 from .solving import refuse_only_locked
 
 SLACK = 1e-9  # of a limit
@@ -137,7 +137,7 @@ class TrackerLives(Attack):
             elif what == "reset":
                 q, qd, qdd = map(np.array, more)
                 lives.append([q - dt * qd - dt * (qd - dt * qdd), q - dt * qd, q])
-            elif what == "stopped" and np.abs(lives[-1][-1] - lives[-1][-2]).max() > RESTS:
+            elif what == "stopped" and not np.array_equal(lives[-1][-1], lives[-1][-2]):
                 raise BrokenError("the arm moves after its stop", (lives[-1][-1] - lives[-1][-2]).tolist())
             elif what == "refused":
                 check_refusal(more, "stamp" if len(limits) == 1 else "")

@@ -14,6 +14,9 @@ use crate::solver::{Monitor, Status};
 use crate::timing::ConstantLimits;
 use crate::tpbso;
 
+/// Parts of the tolerance within which a motion is sought where none was found in all of it.
+const PARTS: [f64; 3] = [0.1, 0.01, 0.0];
+
 /// Plans a motion of `robot` whose tip follows `tip_path`.
 ///
 /// # Errors
@@ -112,11 +115,22 @@ fn plan_admitted(
     let space = options.surroundings.clear_space(robot)?;
     match (&options.method, &space) {
         (AlongPathMethod::Timed, space) => {
-            let problem = PathProblem::new(robot, tip_path, keeps, options)?;
-            match space {
-                None => free_motion(&problem, monitor),
-                Some(space) => clear_path::along_path(&problem, Some(space), monitor),
+            let mut along = |tip_path: &TipPath| {
+                let problem = PathProblem::new(robot, tip_path, keeps, options)?;
+                match space {
+                    None => free_motion(&problem, monitor),
+                    Some(space) => clear_path::along_path(&problem, Some(space), monitor),
+                }
+            };
+            let planned = along(tip_path);
+            if tip_path.largest_tolerance() == 0.0
+                || !is_lost(&planned)
+                || matches!(planned, Err(Error::Unreachable { .. }))
+            {
+                return planned;
             }
+            let mut narrower = PARTS.into_iter().map(|part| along(&tip_path.within_part(part)));
+            narrower.find(|planned| !is_lost(planned)).unwrap_or(planned)
         }
         (AlongPathMethod::Tpbso(_), _) if options.task.is_some() || space.is_some() => Err(Error::Contradiction {
             problem: message!["along a path a task, obstacles and self-collision need ", Setting::Method("timed")],

@@ -9,6 +9,9 @@ use crate::wording::number;
 /// Rounding of the end of a stop (rad, m; relative beyond 1).
 const INSIDE: f64 = 16.0 * f64::EPSILON;
 
+/// Rounding of positions, relative to the jerk limit in a tick, that a stop would feel.
+const COARSE: f64 = 1e-3;
+
 /// Motion of an arm under acceleration or jerk limits.
 #[derive(Debug)]
 pub(super) struct LimitedState {
@@ -94,7 +97,21 @@ impl LimitedState {
 
     /// Advances the state by the motion from `before` to `q`.
     pub fn advance(&mut self, before: &[f64], q: &[f64]) {
-        self.state.advance(q.iter().zip(before).map(|(q, before)| q - before));
+        let braking = self.braking();
+        let mut steps: Point = q.iter().zip(before).map(|(q, before)| q - before).collect();
+        for ((step, q), ((last, change), braking)) in
+            steps.iter_mut().zip(q).zip(self.state.step.iter().zip(&self.state.change).zip(braking))
+        {
+            // Positions round to more than a stop can do without: it goes on from what it meant, or else it would never end.
+            let rounding = f64::EPSILON * q.abs();
+            if rounding > COARSE * braking.jerk {
+                let stopping = last + braking.first_change(*last, *change);
+                if (*step - stopping).abs() <= 4.0 * rounding {
+                    *step = stopping;
+                }
+            }
+        }
+        self.state.advance(steps.iter().copied());
     }
 
     /// Sets velocities (rad/s, m/s) and accelerations (rad/s^2, m/s^2) of an arm at `q`, at t = 0.

@@ -84,6 +84,9 @@ const FELT: usize = 4;
 /// Maximum number of times that intervals are halved; near where one is, the spline of others changes, and they may need it later.
 const HALVINGS: usize = 20;
 
+/// Shortest interval that is halved, as a fraction of the path: where joints jump, no knots help.
+const SHORTEST: f64 = 1e-9;
+
 /// Maximum number of knots: this, and more for each row of the path.
 const MOST_KNOTS: usize = 2000;
 const KNOTS_A_ROW: usize = 2;
@@ -157,7 +160,8 @@ impl Interpolation<'_> {
                 let is_too_much = |q: &[f64], off: f64| off > most || self.excess(q) > SWING * accuracy;
                 Ok(deviation.any_between(ends, SAMPLES, is_too_much).then_some(i))
             };
-            let intervals = (0..settled.len()).filter(|i| !settled[*i]);
+            let knots = &waypoints.knots;
+            let intervals = (0..settled.len()).filter(|i| !settled[*i] && knots[i + 1] - knots[*i] > SHORTEST);
             let coarse: Vec<usize> = intervals.filter_map(|i| is_coarse(i).transpose()).collect::<Result<_>>()?;
             if coarse.is_empty() || waypoints.knots.len() + coarse.len() > most {
                 break;

@@ -137,6 +137,12 @@ impl TipPath {
         self.task.as_ref()
     }
 
+    /// The same curve with no component off by more than `part` of the largest tolerance; free components stay free.
+    pub(crate) fn within_part(&self, part: f64) -> Self {
+        let most = part * self.largest_tolerance();
+        Self { tolerance_band: self.tolerance_band.map(|tolerance_band| tolerance_band.at_most(most)), ..self.clone() }
+    }
+
     /// Whether the tip has to meet whole poses.
     pub fn fixes_pose(&self) -> bool {
         matches!(self.target(0.0), Target::Pose(_)) && !self.has_tolerance()
