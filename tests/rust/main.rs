@@ -110,6 +110,7 @@ mod timing {
 mod moves {
     mod at_limits;
     mod programs;
+    mod torque_limits;
 }
 mod tpbso {
     mod wang_2019;

@@ -79,7 +79,7 @@ pub(super) enum Cause {
     OutOfReach,
     /// A joint would have to go to this value.
     Limit { joint: usize, value: f64 },
-    /// Something is in the way, or what is to be kept is broken: which, with advice.
+    /// Something is in the way, what is to be kept is broken, or a joint cannot hold the arm: which, with advice.
     Blocked(String),
 }
 
@@ -124,8 +124,8 @@ pub(super) struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(around: MoveSurroundings<'a>, limits: &'a ConstantLimits, each: SolveOptions) -> Self {
-        let robot = around.robot;
+    pub fn new(around: MoveSurroundings<'a>, each: SolveOptions) -> Self {
+        let MoveSurroundings { robot, limits, .. } = around;
         let is_redundant = robot.dof() > 6;
         let bounds = if is_redundant {
             let [lower, upper] = limits.inset_positions(INSET);
@@ -342,9 +342,9 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// The first knot at which something is in the way.
+    /// The first knot at which something is in the way, or a joint cannot hold the arm.
     fn blocked(&self, q: &[f64], tracks: &[Track]) -> Option<Dead> {
-        if self.around.is_free() {
+        if self.around.admits_all() {
             return None;
         }
         if tracks.is_empty() {

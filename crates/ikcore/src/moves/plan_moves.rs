@@ -49,7 +49,7 @@ pub fn plan_moves(
     limits.require_accelerations(METHOD)?;
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let space = options.surroundings.clear_space(robot)?;
-    let around = MoveSurroundings { robot, space: space.as_ref(), keeps: &options.keeps };
+    let around = MoveSurroundings { robot, limits: &limits, space: space.as_ref(), keeps: &options.keeps };
     let inside = limits.position_limits(robot)?;
     let admitted = |what: &str, q: &[f64]| -> Result<Vec<f64>> {
         let q = inside.admit_start(Some(robot), what, q, &StartSlack::NONE)?.q;
@@ -66,14 +66,14 @@ pub fn plan_moves(
         seed: options.seed,
         ..SolveOptions::default()
     };
-    let mut ladder = Ladder::new(around, &limits, each.clone());
+    let mut ladder = Ladder::new(around, each.clone());
     let climber = Climber { robot, limits: &limits, moves, blocks: &blocks, each };
     let rungs = match ladder.climb(&blocks, &start, monitor)? {
         Ok(rungs) => rungs,
         Err((block, dead)) => return Err(climber.no_way(block, dead, monitor)?),
     };
     let paths = climber.refined(&mut ladder, &rungs, monitor)?;
-    let mut assembly = Assembly::new(around, &limits, moves, options, &start);
+    let mut assembly = Assembly::new(around, moves, options, &start);
     assembly.add_all(&stages, &rungs, paths, monitor)?;
     let (trajectory, reports) = assembly.finish()?;
     let duration = trajectory.duration();
@@ -143,7 +143,7 @@ impl Climber<'_> {
             }
             Dead::Path { path, at, cause } => (self.blocks[block].paths[path], at, cause),
         };
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let named = self.moves[index].named(index);
         let no_solution = match &cause {
             Cause::Blocked(_) => None,
@@ -179,7 +179,7 @@ impl Climber<'_> {
     /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
     /// and it is not proven that its end has none.
     fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
         let mut solutions = |s: f64| {
             let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
@@ -203,7 +203,7 @@ impl Climber<'_> {
                 near = middle;
             }
         }
-        Ok(Some((place_on(path, far).1, beyond.message())))
+        Ok(Some((path.place_on_move(far).1, beyond.message())))
     }
 
     fn advice(&self, block: usize) -> &'static str {
@@ -215,11 +215,4 @@ impl Climber<'_> {
             None => "begin with a joint move to a pose, so that the planner can choose the configuration",
         }
     }
-}
-
-/// The move at the length `at` of a path, and the length along that move.
-fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
-    let i = path.piece_at(at);
-    let piece = &path.pieces[i];
-    (piece.index, piece.from + at - path.breaks[i])
 }

@@ -32,7 +32,7 @@ use crate::wording::said;
 ///     robot: the arm.
 ///     moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
 ///     start_q: joint positions (n,) at the start.
-///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
+///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
