@@ -2815,7 +2815,7 @@ def track(
         solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
             two evaluations per step.
         limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
-            `Limits(velocity=np.inf)` says that jumps are meant.
+            `Limits(velocity=np.inf)` says that jumps are meant. Torque limits need acceleration limits, as in `Tracker`.
         goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
             dt. They need the model-based rule or `WeightedPseudoInverse`.
         joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so
@@ -3709,7 +3709,7 @@ def plan_point_to_point(
         task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
         keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
             not sampled; `Plan.kept` has the largest errors.
-        limits: position, velocity, acceleration and jerk limits; None: the robot's.
+        limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
             "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
         objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
@@ -3728,7 +3728,7 @@ def plan_point_to_point(
             only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
         LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
             joint and the remedy).
-        InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
+        InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit, or within tip or torque limits.
         UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 
     For example:
@@ -3832,7 +3832,7 @@ def time_optimal(
             parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
             is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
         robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
-            `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
+            `tip_turn_speed` of `limits` are kept for its tips, and `torque` for its joints. None: no robot, and no limits of tips or torques.
 
     Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
     says so: by how much which joint jitters, and the `tolerance` that smooths it.
@@ -4016,7 +4016,7 @@ def plan_along_path(
             whole pose.
         keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
             path leaves free stays upright.
-        limits: position, velocity, acceleration and jerk limits; None: the robot's.
+        limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
             uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
         objective: quantity to minimise, "time" or "joint_travel".
@@ -4030,7 +4030,7 @@ def plan_along_path(
             has tolerances, the accuracy is part of them and must not exceed the smallest.
         breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
             as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
-            go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
+            go on, and comes near again, from rest to rest. What no posture reaches, or in none the joints can hold, is left out. `Plan.breaks` says where, when and why.
         solver: solver of the search of "timed", for an arm with redundancy; None: pattern search from the motion
             found first. `TPBSO` has a
             solver of its own.
@@ -4188,7 +4188,7 @@ class Plan:
         a whole and passes exactly the same configurations.
 
         Args:
-            limits: position, velocity, acceleration and jerk limits; a field left out is the robot's.
+            limits: position, velocity, acceleration, jerk, tip and torque limits; a field left out is the robot's.
 
         Raises:
             TypeError: limits that are no `Limits`.
@@ -4414,7 +4414,7 @@ def plan_moves(
         task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
             an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
             arcs whatever their tolerance. None: whole poses.
-        limits: position, velocity, acceleration and jerk limits; None: the robot's.
+        limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         obstacles: a `Scene` or a list of obstacles to keep clear of.
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.

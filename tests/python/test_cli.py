@@ -396,6 +396,12 @@ def test_a_track_with_a_payload_keeps_the_torques_of_the_file() -> None:
     accelerations = ("--acceleration-limit", "15,7.5,10,12.5,15,20,20")
     summary = run_json(*path, "--payload", "2", "--torque-limits", *accelerations)
     assert summary["steps"] == 200
+    rated = [87, 87, 87, 87, 12, 12, 12]
+    assert (summary["payload"], summary["torque_limit"]) == (2, rated)
+    ends = ("--start-q=0,-0.3,0,-2,0,1.8,0.8", "--end-q=0.3,-0.3,0,-2,0,1.8,0.8")
+    planned = run_json("plan", "point-to-point", "panda", *ends, "--payload", "3", "--torque-limits", *accelerations)
+    assert (planned["payload"], planned["torque_limit"]) == (3, rated)
+    assert "payload" not in run_json("plan", "point-to-point", "panda", *ends)
     assert refused(*path, "--payload", "2") == (
         "Error: --payload counts only where torques are limited: use --torque-limits too"
     )

@@ -435,6 +435,16 @@ WRONG: list[tuple[Any, str]] = [
         lambda: PANDA.accelerations(Q, Q, Q[:3]),
         "joint torques of robot 'panda': expected shape (7,), that of the joint angles, got (3,)",
     ),
+    (
+        lambda: PANDA.torques(Q, 1e160 * np.ones(7)),
+        "torque of joint 'panda_joint1' of robot 'panda' must be a number that floats can hold: what causes it is too "
+        "large, got NaN",
+    ),
+    (
+        lambda: PANDA.accelerations([Q, Q], [np.zeros(7), 1e160 * np.ones(7)], np.zeros((2, 7))),
+        "acceleration of joint 'panda_joint1' of robot 'panda', row 1, must be a number that floats can hold: what "
+        "causes it is too large, got NaN",
+    ),
     (lambda: PANDA.with_payload(-1.0), "payload: the mass is -1 kg: it cannot be negative"),
     (lambda: PANDA.with_payload(np.nan), "payload: mass, centre and inertia matrix must be finite, got NaN"),
     (
@@ -473,7 +483,7 @@ def test_unknown_links_are_named_with_the_nearest() -> None:
     with pytest.raises(bik.UnknownNameError, match="did you mean 'link_1'"):
         PANDA.with_inertias([bik.Inertia("link1", 1.0)])
     pair = bik.Robot.from_urdf(pair_of_pandas(), tip=["left_tool", "right_tool"])
-    with pytest.raises(bik.InvalidInputError, match="with_payload takes robots with one tip"):
+    with pytest.raises(bik.InvalidInputError, match="give the one that carries the payload as link="):
         pair.with_payload(1.0)
     assert pair.with_payload(1.0, link="left_tool").payloads[0].mass == 1.0
 

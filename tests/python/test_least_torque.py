@@ -174,12 +174,17 @@ def solve(robot: bik.Robot, **options: Any) -> None:
         ),
         (
             lambda: solve(PANDA, relative_to=[1, 2, 3, 0, 5, 6, 7]),
-            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that "
+            "relative_to of the goal LeastTorque, entry 3, must be positive, infinite for a joint that "
             "does not count, got 0",
         ),
         (
             lambda: solve(PANDA, relative_to=[1, 2, 3, np.nan, 5, 6, 7]),
-            "relative_to of the goal LeastTorque, joint 'panda_joint4', must be positive, infinite for a joint that "
+            "relative_to of the goal LeastTorque, entry 3, must be positive, infinite for a joint that "
+            "does not count, got NaN",
+        ),
+        (
+            lambda: bik.goals.LeastTorque(relative_to=[np.nan] * 7),
+            "relative_to of the goal LeastTorque, entry 0, must be positive, infinite for a joint that "
             "does not count, got NaN",
         ),
         (

@@ -198,6 +198,51 @@ def test_along_a_path_postures_are_chosen_that_motors_can_hold() -> None:
     assert planned >= 3
 
 
+PANDA = bik.Robot.named("panda").with_payload(3.0, center=(0, 0, 0.05))
+RATED = [15, 7.5, 10, 12.5, 15, 20, 20]
+
+
+def test_joint_moves_of_programs_go_round_what_cannot_be_held() -> None:
+    motors = np.array([60.0, 22.0, 35.0, 60.0, 5.0])
+    start, end = [0.0, -1.5, 0.0, 0.0, 0.0], [0.5, 1.6, 0.0, 0.0, 0.0]
+    plan = bik.plan_moves(ROBOT, [bik.moves.Joints(end)], start_q=start, limits=limits(motors))
+    assert plan.success, plan.message
+    assert np.max(largest(plan.trajectory) / motors) <= 1 + 1e-9
+
+
+def test_breaks_leave_out_what_cannot_be_held() -> None:
+    here = PANDA.fk([0, -0.5, 0, -2.2, 0, 1.8, 0.8])
+    path = np.array([bik.pose([x, 0, 0]) @ here for x in np.linspace(0, 0.3, 40)])
+    given = bik.Limits(acceleration=RATED, torque=0.5 * PANDA.torque_limit)
+    with pytest.raises(bik.InfeasibleError, match=r"joint 'panda_joint2' needs .* N m to hold the arm"):
+        bik.plan_along_path(PANDA, path, limits=given)
+    plan = bik.plan_along_path(PANDA, path, limits=given, breaks=True)
+    assert plan.success, plan.message
+    (only,) = plan.breaks
+    assert 5 < only.at < 39
+    assert only.until == 39
+    assert "joint 'panda_joint2' needs" in only.reason
+    share = np.abs(plan.torques(np.linspace(0, plan.trajectory.duration, 2000))) / given.torque
+    assert share.max() <= 1 + 1e-9
+
+
+def test_a_start_velocity_is_braked_as_mildly_as_the_motors_need() -> None:
+    motors = 0.7 * PANDA.torque_limit
+    given = bik.Limits(acceleration=RATED, torque=motors)
+    q = [-1.742, -0.075, 2.271, -1.437, -2.338, 1.821, 1.012]
+    end = np.add(q, [0.2, 0.1, 0, 0.1, 0, 0, 0])
+    qd = [0, 0, 0, -1.64, 0, 1.25, 0]
+    plan = bik.plan_point_to_point(PANDA, start_q=q, end_q=end, start_qd=qd, limits=given)
+    assert plan.success, plan.message
+    share = np.abs(plan.torques(np.linspace(0, plan.trajectory.duration, 2000))) / motors
+    assert share.max() <= 1 + 1e-9
+    np.testing.assert_allclose(plan.trajectory.at(0.0)[1], qd)
+    expected = r"in the easiest stop found, torque of joint 'panda_joint2' is .* N m, allowed 60.90 N m"
+    falling = [0, 2.0, 0, 2.0, 0, 0, 0]
+    with pytest.raises(bik.InfeasibleError, match=expected):
+        bik.plan_point_to_point(PANDA, start_q=[0, 0.3, 0, -1.6, 0, 1.8, 0.8], end_q=q, start_qd=falling, limits=given)
+
+
 def test_calls_that_cannot_keep_torques_refuse_them_by_name() -> None:
     given = limits(MOTORS)
     with pytest.raises(bik.UnsupportedLimit, match="torque"):

@@ -111,6 +111,7 @@ mod moves {
     mod at_limits;
     mod programs;
     mod tasks;
+    mod torque_limits;
 }
 mod tpbso {
     mod wang_2019;

@@ -20,6 +20,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::EnoughValue => "Stop(value_below=...)",
         Setting::MethodWithSolver => "method=TPBSO(solver=...)",
         Setting::Tip => "tip=",
+        Setting::CarryingLink => "link=",
         Setting::OneTask => "task= for all tips",
         Setting::TaskOfEachTip => "task= of several tips is a dict, such as {tip: tasks.Position()}",
         Setting::JointWeights => "joint_weights",

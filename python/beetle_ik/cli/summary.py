@@ -7,7 +7,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from .. import TrackResult
+from .. import Limits, Robot, TrackResult
 from ..calls.text import counted
 from .files import print_files
 from .show import listed, print_pairs
@@ -37,6 +37,7 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
         "clearance": None if np.isnan(result.clearance).all() else result.clearance.min(),
         "limit_margin": result.limit_margin,
         "max_violation": result.max_violation,
+        **carried(result.robot, result.limits),
         "velocity_limit": {
             "source": limits_from or f"{result.robot.name}'s own",
             "lowest": np.nanmin(result.velocity_limit, axis=0),
@@ -51,6 +52,13 @@ def summarize(result: TrackResult, solver: str, dt: float, seed: int, limits_fro
         "evaluations_per_step": result.step_evaluations[1:].mean(),
         "elapsed": result.elapsed,
     }
+
+
+def carried(robot: Robot, limits: Limits) -> dict[str, Any]:
+    """Returns payload (kg) and torque limits of a motion within torque limits; an empty dict for other motions."""
+    if limits.torque is None:
+        return {}
+    return {"payload": sum(payload.mass for payload in robot.payloads), "torque_limit": limits.torque}
 
 
 def print_summary(summary: dict[str, Any], out: Path | None) -> None:

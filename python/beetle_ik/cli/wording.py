@@ -22,6 +22,7 @@ _OPTIONS = {
     "scene.attach_to(robot)": "a robot that carries it (Scene.attach_to in Python)",
     **{f"{kind}.without_robot(robot, q)": f"{kind}.without_robot in Python" for kind in ("PointCloud", "Grid")},
     "one of them as tip=": "one of them as --tip",
+    "give the one that carries the payload as link=": "load the robot with one of them as --tip",
     'task=tasks.Pose(first="position")': "--first position",
     "robot.wrap(q) takes whole turns off and brings it inside": "whole turns taken off bring it inside",
     "robot.clip(q) moves it to the limit, which changes the pose": "moving it to the limit changes the pose",

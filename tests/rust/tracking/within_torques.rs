@@ -237,10 +237,11 @@ fn more_than_the_joints_can_hold_is_said_until_it_is_gone() {
     let target = Target::from(&empty.fk(&[0.4, 0.3, 0.0, -1.5, 0.0, 1.8, 0.8]).unwrap());
     follow(&mut session, &target, 30);
     session.set_robot(&carrying(&empty, 20.0)).unwrap();
+    let grasped = holding(&session, &carrying(&empty, 20.0));
     for _ in 0..500 {
         assert_eq!(session.step(&target, &mut Unattended).unwrap().status, Status::HeldByTorque);
     }
-    assert!(session.qd().iter().all(|rate| *rate == 0.0), "{:?}", session.qd());
+    assert!(holding(&session, &carrying(&empty, 20.0)) < grasped);
     let words = session.held_by_torque().unwrap();
     assert!(words.contains(" needs ") && words.contains("to hold the arm"), "{words}");
     session.set_robot(&empty).unwrap();
@@ -437,4 +438,62 @@ fn a_track_begins_where_the_motors_can_hold_the_arm() {
         }
     }
     assert!(lightened >= 8, "{lightened} of 12");
+}
+
+/// A session whose arm has just grasped 3 kg where joint 2 can hold at most 93 % of them.
+fn overloaded(jerk: Option<f64>) -> (Session, Robot) {
+    let (empty, grasped_at) = (panda(0.0), [0.0, 0.7, 0.0, -1.2, 0.0, 1.8, 0.8]);
+    let options = TrackOptions { limits: Some(limits(&empty, jerk, motors(&empty, 0.7))), ..TrackOptions::default() };
+    let mut session = Session::new(&empty, &grasped_at, 0.004, &options).unwrap();
+    follow(&mut session, &Target::from(&empty.fk(&grasped_at).unwrap()), 20);
+    let loaded = panda(3.0);
+    session.set_robot(&loaded).unwrap();
+    (session, loaded)
+}
+
+/// Largest part of a torque limit that holds the arm.
+fn holding(session: &Session, robot: &Robot) -> f64 {
+    let torques = robot.torques_all(&Motions { q: session.q(), qd: None, qdd: None, wrenches: None }).unwrap();
+    torques.iter().zip(session.limits().torque()).map(|(torque, limit)| torque.abs() / limit).fold(0.0, f64::max)
+}
+
+#[test]
+fn an_arm_leaves_where_it_cannot_be_held() {
+    for jerk in [None, Some(50.0)] {
+        let (mut session, loaded) = overloaded(jerk);
+        let mut judge = Judge::of(&session, &loaded);
+        let (here, limit) = (Target::from(&loaded.fk(session.q()).unwrap()), session.limits().torque()[1]);
+        let grasped = holding(&session, &loaded);
+        assert!((1.05..1.1).contains(&grasped), "{grasped}");
+        let mut before = grasped;
+        for tick in 0..1000 {
+            session.step(&here, &mut Unattended).unwrap();
+            let excess = judge.note(session.q());
+            assert!(excess <= (grasped - 1.0 + 0.02) * limit + 1e-9, "{excess} in tick {tick} with {jerk:?}");
+            let now = holding(&session, &loaded);
+            assert!(now <= before.max(1.0) + 1e-9, "{now} after {before} in tick {tick} with {jerk:?}");
+            before = now;
+            if tick == 5 {
+                let words = session.held_by_torque().unwrap();
+                assert!(words.contains("needs") && words.ends_with("the arm goes to where it needs less"), "{words}");
+            }
+        }
+        assert!(before < 1.0, "{before} with {jerk:?}");
+        let back = Target::from(&loaded.fk(&[0.0, -0.5, 0.0, -2.2, 0.0, 1.8, 0.8]).unwrap());
+        assert_eq!(follow(&mut session, &back, 800), Status::Solved, "{jerk:?}");
+    }
+}
+
+#[test]
+fn an_arm_that_is_told_to_stop_stays_where_it_cannot_be_held() {
+    let (mut session, loaded) = overloaded(None);
+    let here = Target::from(&loaded.fk(session.q()).unwrap());
+    follow(&mut session, &here, 10);
+    let mut judge = Judge::of(&session, &loaded);
+    stop(&mut session, &mut judge);
+    let q = session.q().to_vec();
+    for _ in 0..50 {
+        session.advance(None, &mut Unattended).unwrap();
+    }
+    assert_eq!(session.q(), q);
 }

@@ -1,7 +1,7 @@
 //! Inverse dynamics along a path, at four points at a time: each lane of the arithmetic is a point.
 //!
-//! With positions q(s) torques are a d2s/dt2 + b (ds/dt)^2 + g. Bodies turn about the same axes in all three, so that one pass over them finds
-//! a, b and g; and what d2s/dt2 accelerates is what moves: the velocities at ds/dt = 1.
+//! Along a path q(s) the torques are a d2s/dt2 + b (ds/dt)^2 + g. One recursive Newton-Euler pass computes a, b and g together, because all
+//! three use the same axes. The accelerations of bodies that multiply d2s/dt2 are their velocities at ds/dt = 1.
 
 use super::rigid_bodies::{Dynamics, MovingBody};
 use crate::math::Frame;
@@ -23,7 +23,7 @@ pub(crate) struct PathPoints<'a> {
 /// The torque of a joint at four points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathTerms {
-    /// What holds the bodies up.
+    /// Torque against gravity.
     pub hold: F64x4,
     /// Factor of (ds/dt)^2.
     pub of_square: F64x4,
@@ -36,24 +36,27 @@ type Vectors = [F64x4; 3];
 
 const ZERO: Vectors = [F64x4::ZERO; 3];
 
-/// Motion of a body, and the load that its stage passes on: scratch memory of [`Dynamics::write_path_terms`].
+/// Motion of a body, and the load on its joint: scratch memory of [`Dynamics::write_path_terms`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BodyOnPath {
+    /// Angular velocity and acceleration at ds/dt = 1 and d2s/dt2 = 0.
     turn: Vectors,
     turn_rate: Vectors,
-    /// Of the origin.
+    /// Velocity and acceleration of the origin of the frame, likewise.
     velocity: Vectors,
     acceleration: Vectors,
-    /// First moment about the origin of all that the frame carries.
+    /// First moment of mass, about the origin, of this body and all bodies beyond it.
     first: Vectors,
+    /// Factors of (ds/dt)^2 and of d2s/dt2.
     of_square: Load,
     of_change: Load,
 }
 
+/// Force and moment.
 #[derive(Debug, Clone, Copy)]
 struct Load {
     force: Vectors,
-    /// About the origin.
+    /// About the origin of the frame.
     moment: Vectors,
 }
 
@@ -70,8 +73,8 @@ impl BodyOnPath {
 }
 
 impl Dynamics {
-    /// Writes the torques (n,) of all joints without friction; `bodies` has one entry per frame. Not for stages that are curves or belong to
-    /// a rotation vector.
+    /// Writes the torques (n,) of all joints without friction; `bodies` has one entry per frame. Supports neither joints that follow a
+    /// polynomial nor a floating base.
     pub(crate) fn write_path_terms(&self, at: &PathPoints, bodies: &mut [BodyOnPath], terms: &mut [PathTerms]) {
         path_terms(self, at, bodies, terms);
     }
@@ -100,7 +103,7 @@ by_instructions! {
     }
 }
 
-/// Returns the motion of a body with the load that it needs alone.
+/// Returns the motion of a body, and the force and moment that its own mass needs.
 #[inline(always)]
 fn moved<A: Arithmetic>(
     body: &MovingBody,
@@ -141,7 +144,7 @@ fn moved<A: Arithmetic>(
     }
 }
 
-/// Adds what a joint feels of the load on its stage, which carries this mass.
+/// Adds the part of a load that acts along the axis of a joint; `mass` is that of all bodies beyond the joint.
 #[inline(always)]
 fn felt<A: Arithmetic>(
     body: &MovingBody,
@@ -163,7 +166,7 @@ fn felt<A: Arithmetic>(
     terms.of_change = (turning.mul_add(turn_scale, sliding.mul_add(slide_scale, Four::of(terms.of_change)))).stored();
 }
 
-/// Adds a load to that of the body that carries it, `lever` away.
+/// Adds the load on a body to that on its parent, `lever` away.
 #[inline(always)]
 fn pass_on<A: Arithmetic>(load: &BodyOnPath, lever: Vec3<Four<A>>, mass: f64, parent: &mut BodyOnPath) {
     let first = lever.mul_add(Four::splat(mass), Vec3::of(&load.first));
@@ -179,14 +182,14 @@ fn add<A: Arithmetic>(load: &Load, lever: Vec3<Four<A>>, sum: &mut Load) {
     sum.moment = (Vec3::of(&sum.moment) + Vec3::of(&load.moment) + lever.cross(force)).stored();
 }
 
-/// Returns a vector of a frame in base axes.
+/// Rotates a vector from the axes of a frame to those of the base.
 #[inline(always)]
 fn in_base<A: Arithmetic>(frame: &Frame<F64x4>, v: Vec3<Four<A>>) -> Vec3<Four<A>> {
     let along_x = Vec3::<Four<A>>::of(&frame.axes[0]) * v.x;
     Vec3::of(&frame.axes[2]).mul_add(v.z, Vec3::of(&frame.axes[1]).mul_add(v.y, along_x))
 }
 
-/// Returns the product of a body's inertia about the origin of its frame, and a vector, in base axes.
+/// Multiplies a vector in base axes by the inertia of a body about the origin of its frame.
 #[inline(always)]
 fn turned_inertia<A: Arithmetic>(body: &MovingBody, frame: &Frame<F64x4>, v: Vec3<Four<A>>) -> Vec3<Four<A>> {
     let [x, y, z] = &frame.axes;

@@ -18,7 +18,6 @@ use crate::plan::{
     refuse_collision, too_near,
 };
 use crate::solver::{Monitor, Status};
-use crate::timing::ConstantLimits;
 
 /// Number of configurations that all trees may examine in all, for each joint: a second or two of an arm in a narrow place.
 const BUDGET_PER_JOINT: usize = 150_000;
@@ -53,7 +52,7 @@ pub(super) fn plan(
         Endpoint::Configuration(q) => {
             let what = name.of_configuration();
             refuse_broken(&what, &options.keeps, robot, q)?;
-            refuse_too_heavy(&what, limits, q)?;
+            limits.refuse_too_heavy(&what, q)?;
             refuse_collision(&what, space, q)
         }
         Endpoint::Targets { .. } => Ok(()),
@@ -136,14 +135,6 @@ pub(super) fn plan(
     let taken = pairs.iter().chain(&open).min_by(|one, other| distance(one).total_cmp(&distance(other)));
     plan.chosen_end = taken.map(|pair| pair.chosen);
     Ok(plan)
-}
-
-/// Checks that the joints can hold the arm at an end.
-fn refuse_too_heavy(what: &str, limits: &ConstantLimits, q: &[f64]) -> Result<()> {
-    match limits.too_heavy(q) {
-        None => Ok(()),
-        Some(heavy) => Err(Error::Infeasible { problem: format!("at {what} {heavy}").into() }),
-    }
 }
 
 /// Returns the pair whose straight line penetrates least, at samples.

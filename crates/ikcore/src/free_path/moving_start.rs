@@ -12,7 +12,13 @@ use crate::obstacle::{ClearSpace, Clearance, ClearanceSweep};
 use crate::plan::{EndName, Endpoint, Plan, PointToPointOptions, TimedMotion, certify, joined, least_clearance};
 use crate::robot::Robot;
 use crate::solver::Monitor;
+use crate::timing::{ConstantLimits, Violation};
 use crate::trajectory::Trajectory;
+
+/// Ratio of the parts of all accelerations and jerks with which an arm brakes or goes to the end, where limits of tips or torques forbid more, and
+/// the least of these parts.
+const MILDER: f64 = 0.85;
+const MILDEST: f64 = 0.02;
 
 /// Continuation of a motion with an initial velocity.
 pub(super) enum Beginning {
@@ -47,58 +53,116 @@ pub(super) fn begin(
     };
     check(search, velocity)?;
     refuse_broken(&EndName::Start.of_configuration(), &options.keeps, search.robot, q)?;
-    let taken = StartSlack::any();
-    // Motions of state_to_state know nothing of tips and torques; those that keep their limits are taken.
     let limits = options.limits.clone().unwrap_or_else(|| Limits::of(search.robot)).of_joint_motion();
-    let constant = search.limits;
     let from = ArmState { q: q.clone(), qd: velocity.to_vec(), qdd: vec![0.0; q.len()] };
-    let mut sweep = space.map(|space| (ClearanceSweep::new(space.scene()), space.margin()));
-    let mut kept = (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps));
-    let mut is_free = |motion: &Trajectory| {
-        let whole = [0.0, motion.duration()];
-        constant.keep_whole(motion)
-            && kept.as_mut().is_none_or(|kept| kept.check(&TimedMotion::new(motion), whole).is_ok())
-            && sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
+    let mut judge = Judge {
+        limits: search.limits,
+        sweep: space.map(|space| (ClearanceSweep::new(space.scene()), space.margin())),
+        kept: (!options.keeps.is_empty()).then(|| KeepSweep::new(search.robot, &options.keeps)),
     };
     let pairs = search.pairs(PAIRS, monitor)?;
-    let last = pairs.first().ok_or_else(no_pair)?;
-    let direct = |end: &[f64]| state_to_state_from(&from, &ArmState::at_rest(end), &limits, &taken).ok();
-    let to_end = |pair: &EndPair| Some((pair.chosen, direct(&pair.end)?));
-    let mut motions: Vec<(usize, Trajectory)> = pairs.iter().chain([last]).filter_map(to_end).collect();
-    motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
-    if let Some((chosen, trajectory)) = motions.into_iter().find(|(_, motion)| is_free(motion)) {
-        let least = match &mut sweep {
-            Some((sweep, margin)) => least_clearance(sweep, &trajectory, Some(*margin))?,
-            None => None,
-        };
-        return Ok(Beginning::Whole(Box::new(Plan {
-            clearance: least.map(|(clearance, _)| clearance),
-            chosen_end: Some(chosen),
-            ..search.plan(trajectory, options.objective)
-        })));
+    if pairs.is_empty() {
+        return Err(no_pair());
     }
-    if velocity.iter().all(|v| *v == 0.0) {
+    let rests = velocity.iter().all(|v| *v == 0.0);
+    let stops = Stops::of(&from, &limits);
+    let parts = if search.limits.limit_whole() && !rests { milder_parts() } else { vec![1.0] };
+    for part in parts {
+        if let Some((chosen, trajectory)) = direct(&from, &pairs, &limits.eased(part), &mut judge) {
+            let clearance = judge.least_clearance(&trajectory)?;
+            let plan = search.plan(trajectory, options.objective);
+            return Ok(Beginning::Whole(Box::new(Plan { clearance, chosen_end: Some(chosen), ..plan })));
+        }
+        if let Some(braking) = stops.with(part).find(|braking| judge.admits(braking)) {
+            return Ok(Beginning::Stop(braking));
+        }
+    }
+    if rests {
         return Ok(Beginning::Rest);
     }
-    let braking = stop(&from, &limits)?;
-    if is_free(&braking) {
-        return Ok(Beginning::Stop(braking));
+    let fastest = stop(&from, &limits)?;
+    Err(judge.no_stop(fastest, &stops))
+}
+
+/// Stops of an arm in motion: each joint as quickly as it can, and all together on a straight line.
+struct Stops<'a> {
+    from: &'a ArmState,
+    limits: [Limits; 2],
+}
+
+impl<'a> Stops<'a> {
+    fn of(from: &'a ArmState, limits: &Limits) -> Self {
+        Self { from, limits: [limits.clone(), limits.in_proportion(&from.qd)] }
     }
-    if !constant.keep_whole(&braking) {
-        let problem =
-            message!["at ", Setting::StartVelocity, " the arm cannot stop within the limits of its tips or torques"];
-        return Err(Error::Infeasible { problem });
+
+    /// The stops with this part of the accelerations and jerks; none for an arm at rest.
+    fn with(&self, part: f64) -> impl Iterator<Item = Trajectory> {
+        let stop_within = move |limits: &Limits| stop(self.from, &limits.eased(part)).ok();
+        self.limits.iter().filter_map(stop_within)
     }
-    let problem = message![
-        "at ",
-        Setting::StartVelocity,
-        if options.keeps.is_empty() {
-            " the arm cannot stop before it comes nearer to an obstacle than the margin"
-        } else {
-            " the arm cannot stop before it comes nearer to an obstacle than the margin, or breaks what is to be kept"
-        }
-    ];
-    Err(Error::Infeasible { problem })
+}
+
+/// Parts of the accelerations and jerks with which an arm brakes or goes to the end, all of them first.
+fn milder_parts() -> Vec<f64> {
+    std::iter::successors(Some(1.0), |part| Some(MILDER * part)).take_while(|part| *part >= MILDEST).collect()
+}
+
+/// The quickest motion to one of these ends that the judge admits, and the index of the end.
+fn direct(from: &ArmState, pairs: &[EndPair], limits: &Limits, judge: &mut Judge<'_>) -> Option<(usize, Trajectory)> {
+    let motion = |end: &[f64]| state_to_state_from(from, &ArmState::at_rest(end), limits, &StartSlack::any()).ok();
+    let to_end = |pair: &EndPair| Some((pair.chosen, motion(&pair.end)?));
+    let mut motions: Vec<(usize, Trajectory)> = pairs.iter().filter_map(to_end).collect();
+    motions.sort_by(|one, other| one.1.duration().total_cmp(&other.1.duration()));
+    motions.into_iter().find(|(_, motion)| judge.admits(motion))
+}
+
+/// Judge of motions by what [`state_to_state_from`] does not know: limits of tips and torques, obstacles, and what is to be kept.
+struct Judge<'a> {
+    limits: &'a ConstantLimits,
+    sweep: Option<(ClearanceSweep<'a>, f64)>,
+    kept: Option<KeepSweep<'a>>,
+}
+
+impl Judge<'_> {
+    fn admits(&mut self, motion: &Trajectory) -> bool {
+        self.limits.keep_whole(motion)
+            && self
+                .kept
+                .as_mut()
+                .is_none_or(|kept| kept.check(&TimedMotion::new(motion), [0.0, motion.duration()]).is_ok())
+            && self.sweep.as_mut().is_none_or(|(sweep, margin)| certify(sweep, motion, *margin).is_ok())
+    }
+
+    /// Smallest distance from obstacles, if there are any.
+    fn least_clearance(&mut self, motion: &Trajectory) -> Result<Option<Clearance>> {
+        let Some((sweep, margin)) = &mut self.sweep else { return Ok(None) };
+        Ok(least_clearance(sweep, motion, Some(*margin))?.map(|(clearance, _)| clearance))
+    }
+
+    /// The error where none of these stops is admitted, not even the `fastest`.
+    fn no_stop(&self, fastest: Trajectory, stops: &Stops<'_>) -> Error {
+        let parts = if self.limits.limit_whole() { milder_parts() } else { vec![] };
+        let milder = parts.into_iter().flat_map(|part| stops.with(part));
+        let share = |found: &Violation| (found.value / found.bound).abs();
+        let worst = |motion: Trajectory| {
+            let found = self.limits.whole_violations(&motion);
+            found.into_iter().max_by(|one, other| share(one).total_cmp(&share(other)))
+        };
+        // A stop within these limits is forbidden by what is around the arm.
+        let found: Option<Vec<Violation>> = std::iter::once(fastest).chain(milder).map(worst).collect();
+        let mildest = found.and_then(|all| all.into_iter().min_by(|one, other| share(one).total_cmp(&share(other))));
+        let why = match mildest {
+            Some(violation) => {
+                format!(" the arm cannot stop within the limits of its tips or torques: in the easiest stop found, {violation}")
+            }
+            None if self.kept.is_none() => {
+                " the arm cannot stop before it comes nearer to an obstacle than the margin".into()
+            }
+            None => " the arm cannot stop before it comes nearer to an obstacle than the margin, or breaks what is to be kept"
+                .into(),
+        };
+        Error::Infeasible { problem: message!["at ", Setting::StartVelocity, why] }
+    }
 }
 
 /// Checks that the velocity fits the arm and its limits, and that it cannot simply jump.

@@ -263,6 +263,33 @@ impl Limits {
         Self { tips: TipLimits::default(), torque: vec![], ..self }
     }
 
+    /// These limits with constant accelerations and jerks reduced to this part.
+    pub(crate) fn eased(&self, part: f64) -> Self {
+        self.with_changes(|all| all.iter_mut().for_each(|limit| *limit *= part))
+    }
+
+    /// These limits with constant accelerations and jerks in proportion to these velocities: joints that brake with them stop together, on a
+    /// straight line. Those of joints at rest stay.
+    pub(crate) fn in_proportion(&self, velocity: &[f64]) -> Self {
+        self.with_changes(|all| {
+            let moving = || velocity.iter().enumerate().filter(|(_, rate)| **rate != 0.0);
+            let least = moving().map(|(j, rate)| all[j] / rate.abs()).fold(f64::INFINITY, f64::min);
+            moving().filter(|_| least.is_finite()).for_each(|(j, rate)| all[j] = least * rate.abs());
+        })
+    }
+
+    /// These limits with other accelerations and jerks, where these are constant.
+    fn with_changes(&self, change: impl Fn(&mut [f64])) -> Self {
+        let changed = |profiles: &Option<Vec<Profile>>| {
+            let constant = |profile: &Profile| if let Profile::Constant(value) = profile { Some(*value) } else { None };
+            let values: Option<Vec<f64>> = profiles.as_ref()?.iter().map(constant).collect();
+            let Some(mut values) = values else { return profiles.clone() };
+            change(&mut values);
+            Some(values.into_iter().map(Profile::Constant).collect())
+        };
+        Self { acceleration: changed(&self.acceleration), jerk: changed(&self.jerk), ..self.clone() }
+    }
+
     /// Returns the values of a field, one per joint; empty without such limits. An error if they vary over time, which
     /// `method` does not support.
     ///

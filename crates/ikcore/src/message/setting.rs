@@ -22,6 +22,8 @@ pub enum Setting {
     First(&'static str),
     /// Tip of a robot that has several.
     Tip,
+    /// Link that carries a payload.
+    CarryingLink,
     /// Common task of all tips.
     OneTask,
     /// Tasks of each of several tips.
@@ -108,6 +110,7 @@ impl fmt::Display for Setting {
             Self::EnoughValue => "a value",
             Self::MethodWithSolver => "the method 'tpbso'",
             Self::Tip => "its tip",
+            Self::CarryingLink => "the link",
             Self::OneTask => "one task for all tips",
             Self::TaskOfEachTip => "each of several tips has a task of its own",
             Self::JointWeights => "weights of joints",

@@ -1,6 +1,6 @@
 //! The motion of a whole program, step by step.
 
-use super::around::MoveSurroundings;
+use super::around::{ADVICE_HOLD, MoveSurroundings};
 use super::ladder::Rung;
 use super::move_task::MoveTask;
 use super::moves_options::MovesOptions;
@@ -16,8 +16,12 @@ use crate::message::Message;
 use crate::plan::{EndTurns, Endpoint, MoveCourse, MoveReport, PointToPointOptions, SpeedBound};
 use crate::robot::Robot;
 use crate::solver::Monitor;
-use crate::timing::{ConstantLimits, JointPath};
+use crate::timing::JointPath;
 use crate::trajectory::{Trajectory, polynomial};
+use crate::wording::number;
+
+/// Intervals of each piece of a path in which the place is sought where a joint cannot hold the arm.
+const SAMPLES: usize = 8;
 
 /// Joint difference (rad, m) below which a joint move does not move.
 const NOTHING: f64 = 1e-9;
@@ -28,7 +32,6 @@ pub(super) struct Assembly<'a> {
     /// The robot with the tool of the task, and the task.
     robot: &'a Robot,
     task: MoveTask,
-    limits: &'a ConstantLimits,
     moves: &'a [Move],
     options: &'a MovesOptions,
     /// Configuration at the end.
@@ -41,12 +44,11 @@ impl<'a> Assembly<'a> {
     pub fn new(
         around: MoveSurroundings<'a>,
         (robot, task): (&'a Robot, MoveTask),
-        limits: &'a ConstantLimits,
         moves: &'a [Move],
         options: &'a MovesOptions,
         start: &[f64],
     ) -> Self {
-        Self { around, robot, task, limits, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
+        Self { around, robot, task, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
     }
 
     /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
@@ -76,7 +78,8 @@ impl<'a> Assembly<'a> {
                     if is_still {
                         return Err(self.without_room(*index, parts.last()));
                     }
-                    let path = JointPath::polyline(self.limits.joint_names(), &[&from[..], &rung.q].concat(), 0.0)?;
+                    let path =
+                        JointPath::polyline(self.around.limits.joint_names(), &[&from[..], &rung.q].concat(), 0.0)?;
                     parts.push(RunPart { index: *index, tool_path: None, path });
                 }
                 StageKind::Along(tool_path) => {
@@ -96,25 +99,26 @@ impl<'a> Assembly<'a> {
     /// Adds parts with rounded corners between them where that is possible and clear, else with stops.
     fn go(&mut self, parts: Vec<RunPart<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
         if !radii.is_empty()
-            && let Some(run) = Run::rounded(self.robot, &self.task, self.limits, &parts, &radii)?
+            && let Some(run) = Run::rounded(self.robot, &self.task, self.around.limits, &parts, &radii)?
         {
-            let motion = timed(&run.path, self.limits)?;
-            let is_better = if self.around.is_free() {
-                !self.stops_are_faster(&parts, motion.duration())?
-            } else {
-                self.around.fault_on(&motion)?.is_none()
+            let motion = self.timed_where_held(&run.path)?;
+            let is_better = |motion: &Trajectory| match self.around.is_free() {
+                true => Ok(!self.stops_are_faster(&parts, motion.duration())?),
+                false => Ok::<_, Error>(self.around.fault_on(motion)?.is_none()),
             };
-            if is_better {
+            if let Ok(motion) = motion
+                && is_better(&motion)?
+            {
                 return self.add(&run, motion);
             }
         }
         for part in parts {
-            if part.tool_path.is_none() && !self.around.is_free() {
+            if part.tool_path.is_none() && !self.goes_straight(&part) {
                 self.way_around(&part, monitor)?;
                 continue;
             }
             let run = Run::of(part);
-            let motion = timed(&run.path, self.limits)?;
+            let motion = self.timed_where_held(&run.path)?.map_err(|problem| self.too_heavy(&run.parts[0], problem))?;
             if !self.around.is_free()
                 && let Some(fault) = self.around.fault_on(&motion)?
             {
@@ -125,11 +129,49 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    /// Whether a joint move may take the straight line: nothing can be in the way, and joints can hold the arm on all of it.
+    fn goes_straight(&self, part: &RunPart<'_>) -> bool {
+        self.around.is_free() && self.around.can_hold_along(&start_of(part), &end_of(part))
+    }
+
+    /// The fastest motion along a path; why there is none within torque limits.
+    ///
+    /// # Errors
+    /// Those of timings.
+    fn timed_where_held(&self, path: &JointPath) -> Result<Result<Trajectory, Message>> {
+        match timed(path, self.around.limits) {
+            Err(Error::Infeasible { problem }) if self.around.limits.limit_torque() => Ok(Err(problem)),
+            other => other.map(Ok),
+        }
+    }
+
+    /// The error for a part that cannot be timed for this `problem`: where a joint cannot hold the arm, which one, and what it needs.
+    fn too_heavy(&self, part: &RunPart<'_>, problem: Message) -> Error {
+        let (path, limits) = (&part.path, self.around.limits);
+        let mut q = self.q.clone();
+        let fractions = || (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64);
+        let places = path.breaks().windows(2).flat_map(|ends| fractions().map(|x| ends[0] + x * (ends[1] - ends[0])));
+        let heavy = |s: f64| {
+            path.position(s, &mut q);
+            Some((s, limits.too_heavy(&q)?))
+        };
+        let Some((s, heavy)) = { places }.find_map(heavy) else { return self.not_found(part.index, problem) };
+        let (index, place) = match part.tool_path {
+            Some(tool_path) => {
+                let (index, along) = tool_path.place_on_move(s);
+                (index, format!("{} m along it", number(along)))
+            }
+            None => (part.index, "on the straight way of the joints".into()),
+        };
+        self.not_found(index, format!("{place}, {heavy}; {ADVICE_HOLD}").into())
+    }
+
     /// Whether the parts, with a stop after each, are faster than a duration (s): a tight corner may take longer than a stop.
     fn stops_are_faster(&self, parts: &[RunPart<'a>], than: f64) -> Result<bool> {
         let mut duration = 0.0;
         for part in parts {
-            duration += timed(&part.path, self.limits)?.duration();
+            let Ok(motion) = self.timed_where_held(&part.path)? else { return Ok(false) };
+            duration += motion.duration();
             if duration >= than {
                 return Ok(false);
             }
@@ -163,7 +205,7 @@ impl<'a> Assembly<'a> {
             for (index, s) in tool_path.ends_of_moves() {
                 let is_last = s >= window.to;
                 let end = if is_last { end_of_part } else { begin + time_at(&on_it, s) };
-                let bounds = bounds_on(tool_path, index, (&motion, &on_it, begin), self.limits);
+                let bounds = bounds_on(tool_path, index, (&motion, &on_it, begin), self.around.limits);
                 self.report(index, [start, end], speed_on(tool_path, index, &on_it), bounds);
                 start = end;
             }
@@ -207,7 +249,7 @@ impl<'a> Assembly<'a> {
         let start = self.now();
         if seconds > 0.0 {
             let still = self.q.iter().map(|q| polynomial([*q])).collect();
-            self.push(Trajectory::new(self.limits.joint_names(), vec![0.0, seconds], still)?)?;
+            self.push(Trajectory::new(self.around.limits.joint_names(), vec![0.0, seconds], still)?)?;
         }
         let (name, end) = (self.moves[index].name.clone(), self.now());
         self.reports.push(MoveReport { name, start, end, course: MoveCourse::Rest, speed: 0.0, bound_by: vec![] });
@@ -257,9 +299,18 @@ impl<'a> Assembly<'a> {
     }
 }
 
+/// Joint positions at the start of a part.
+fn start_of(part: &RunPart<'_>) -> Vec<f64> {
+    at(part, part.path.breaks()[0])
+}
+
 /// Joint positions at the end of a part.
 fn end_of(part: &RunPart<'_>) -> Vec<f64> {
+    at(part, part.path.breaks()[part.path.pieces()])
+}
+
+fn at(part: &RunPart<'_>, s: f64) -> Vec<f64> {
     let mut q = vec![0.0; part.path.joints().len()];
-    part.path.position(part.path.breaks()[part.path.pieces()], &mut q);
+    part.path.position(s, &mut q);
     q
 }

@@ -63,7 +63,7 @@ impl Climber<'_> {
             }
             Dead::Path { path, at, cause } => (self.blocks[block].paths[path], at, cause),
         };
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let named = self.moves[index].named(index);
         let no_solution = match &cause {
             Cause::Blocked(_) => None,
@@ -93,7 +93,7 @@ impl Climber<'_> {
 
     /// The error for a path on which the arm need not move.
     fn stands_still(&self, path: &ToolPath, at: f64) -> Error {
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let problem = format!(
             "the task leaves the tip so free that the arm need not move {} m along it: leave it out, or ask for more of the pose",
             number(along)
@@ -110,7 +110,7 @@ impl Climber<'_> {
     /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
     /// and it is not proven that its end has none.
     fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
-        let (index, along) = place_on(path, at);
+        let (index, along) = path.place_on_move(at);
         let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
         let mut solutions = |s: f64| {
             let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
@@ -139,7 +139,7 @@ impl Climber<'_> {
                 near = middle;
             }
         }
-        Ok(Some((place_on(path, far).1, beyond.message())))
+        Ok(Some((path.place_on_move(far).1, beyond.message())))
     }
 
     fn advice(&self, block: usize) -> &'static str {
@@ -151,11 +151,4 @@ impl Climber<'_> {
             None => "begin with a joint move to a pose, so that the planner can choose the configuration",
         }
     }
-}
-
-/// The move at the length `at` of a path, and the length along that move.
-fn place_on(path: &ToolPath, at: f64) -> (usize, f64) {
-    let i = path.piece_at(at);
-    let piece = &path.pieces[i];
-    (piece.index, piece.from + at - path.breaks[i])
 }

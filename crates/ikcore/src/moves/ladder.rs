@@ -79,7 +79,7 @@ pub(super) enum Cause {
     OutOfReach,
     /// A joint would have to go to this value.
     Limit { joint: usize, value: f64 },
-    /// Something is in the way, or what is to be kept is broken: which, with advice.
+    /// Something is in the way, what is to be kept is broken, or a joint cannot hold the arm: which, with advice.
     Blocked(String),
 }
 
@@ -125,12 +125,8 @@ pub(super) struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(
-        around: MoveSurroundings<'a>,
-        (robot, task): (&'a Robot, MoveTask),
-        limits: &'a ConstantLimits,
-        each: SolveOptions,
-    ) -> Self {
+    pub fn new(around: MoveSurroundings<'a>, (robot, task): (&'a Robot, MoveTask), each: SolveOptions) -> Self {
+        let limits = around.limits;
         let is_redundant = task.leaves_freedom(robot.dof());
         let bounds = if is_redundant {
             let [lower, upper] = limits.inset_positions(INSET);
@@ -344,9 +340,9 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// The first knot at which something is in the way.
+    /// The first knot at which something is in the way, or a joint cannot hold the arm.
     fn blocked(&self, q: &[f64], tracks: &[Track]) -> Option<Dead> {
-        if self.around.is_free() {
+        if self.around.admits_all() {
             return None;
         }
         if tracks.is_empty() {

@@ -43,7 +43,7 @@ pub fn plan_moves(
     limits.require_accelerations(METHOD)?;
     options.keeps.iter().try_for_each(|keep| keep.require_tips(robot))?;
     let space = options.surroundings.clear_space(robot)?;
-    let around = MoveSurroundings { robot, space: space.as_ref(), keeps: &options.keeps };
+    let around = MoveSurroundings { robot, limits: &limits, space: space.as_ref(), keeps: &options.keeps };
     let inside = limits.position_limits(robot)?;
     let admitted = |what: &str, q: &[f64]| -> Result<Vec<f64>> {
         let q = inside.admit_start(Some(robot), what, q, &StartSlack::NONE)?.q;
@@ -53,7 +53,7 @@ pub fn plan_moves(
     let start = admitted("start_q", start)?;
     let moves = &with_goals(moves, admitted)?;
     let robot = with_tool.as_ref().unwrap_or(robot);
-    let planner = ProgramPlanner { around, robot, limits: &limits, moves, start: &start, options, explains: true };
+    let planner = ProgramPlanner { around, robot, moves, start: &start, options, explains: true };
     let mut planned = planner.plan(&task, monitor);
     let mut evaluations = count(&planned);
     for tighter in task.tighter() {

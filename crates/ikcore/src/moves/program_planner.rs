@@ -14,7 +14,6 @@ use crate::obstacle::Clearance;
 use crate::plan::{Cost, Plan};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::timing::ConstantLimits;
 
 /// A checked program.
 #[derive(Clone, Copy)]
@@ -22,7 +21,6 @@ pub(super) struct ProgramPlanner<'a> {
     pub around: MoveSurroundings<'a>,
     /// The robot with the tool of the task.
     pub robot: &'a Robot,
-    pub limits: &'a ConstantLimits,
     pub moves: &'a [Move],
     pub start: &'a [f64],
     pub options: &'a MovesOptions,
@@ -36,7 +34,8 @@ impl ProgramPlanner<'_> {
     /// # Errors
     /// As [`plan_moves`](super::plan_moves()).
     pub fn plan(&self, task: &MoveTask, monitor: &mut dyn Monitor) -> Result<Plan> {
-        let Self { around, robot, limits, moves, start, options, explains } = *self;
+        let Self { around, robot, moves, start, options, explains } = *self;
+        let limits = around.limits;
         let stages = outline(robot, moves, start, task)?;
         let blocks = blocks(&stages, moves);
         let each = SolveOptions {
@@ -45,7 +44,7 @@ impl ProgramPlanner<'_> {
             seed: options.seed,
             ..SolveOptions::default()
         };
-        let mut ladder = Ladder::new(around, (robot, *task), limits, each.clone());
+        let mut ladder = Ladder::new(around, (robot, *task), each.clone());
         let each = SolveOptions { task: task.searched(), ..each };
         let climber = Climber { robot, limits, moves, blocks: &blocks, each, explains };
         let rungs = match ladder.climb(&blocks, start, monitor)? {
@@ -53,7 +52,7 @@ impl ProgramPlanner<'_> {
             Err((block, dead)) => return Err(climber.no_way(block, dead, monitor)?),
         };
         let paths = climber.refined(&mut ladder, &rungs, monitor)?;
-        let mut assembly = Assembly::new(around, (robot, *task), limits, moves, options, start);
+        let mut assembly = Assembly::new(around, (robot, *task), moves, options, start);
         assembly.add_all(&stages, &rungs, paths, monitor)?;
         let (trajectory, reports) = assembly.finish()?;
         let duration = trajectory.duration();

@@ -116,6 +116,13 @@ impl ToolPath {
         self.breaks.partition_point(|begin| *begin <= s).clamp(1, self.pieces.len()) - 1
     }
 
+    /// The move at the length `s`, and the length along that move.
+    pub fn place_on_move(&self, s: f64) -> (usize, f64) {
+        let i = self.piece_at(s);
+        let piece = &self.pieces[i];
+        (piece.index, piece.from + s - self.breaks[i])
+    }
+
     /// Pose of the tip at the length `s`.
     pub fn pose(&self, s: f64) -> Frame {
         let piece = self.piece_at(s);

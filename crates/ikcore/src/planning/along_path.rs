@@ -51,9 +51,15 @@ pub fn plan_along_path(
         None => plan_admitted(robot, &tip_path, keeps, options, monitor),
         Some(start) => plan_from(robot, &tip_path, keeps, (start, &limits), options, monitor),
     };
-    let mut plan = match options.breaks && is_lost(&planned) {
-        true => BrokenPath { robot, tip_path: &tip_path, keeps, options }.plan(monitor)?.map_or(planned, Ok)?,
-        false => planned?,
+    let broken = BrokenPath { robot, tip_path: &tip_path, keeps, options };
+    let mut plan = match options.breaks {
+        true if is_lost(&planned) => broken.plan(monitor)?.map_or(planned, Ok)?,
+        true if limits.limit_torque() && matches!(planned, Err(Error::Infeasible { .. })) => match broken.plan(monitor)
+        {
+            Err(Error::NotFound { .. } | Error::Unreachable { .. } | Error::Infeasible { .. }) => planned?,
+            broken => broken?.map_or(planned, Ok)?,
+        },
+        _ => planned?,
     };
     if plan.note_kept(keeps.robot, keeps.keeps)?.is_some() && plan.status == Status::Solved {
         plan.status = Status::Stalled;

@@ -93,7 +93,7 @@ impl BrokenPath<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<(Plan, [f64; 2])> {
         let whole = stretch.ends;
-        let mut first_plan = None;
+        let (mut first_plan, mut too_heavy) = (None, None);
         for given_up in 0..=GIVEN_UP {
             let is_free = |end: usize| if whole[end] == end as f64 { 0 } else { given_up };
             let Some(shorter) = stretch.clone().without(is_free(0), is_free(1)) else { break };
@@ -104,13 +104,19 @@ impl BrokenPath<'_> {
             let start = self.options.start.clone().filter(|_| begins_as_given);
             let options = AlongPathOptions { start, accuracy: Some(accuracy), ..self.options.clone() };
             let problem = PathProblem::new(self.robot, &part, self.keeps, &options)?;
-            let plan = along_stretch(&problem, space, shorter, monitor)?;
+            let plan = match along_stretch(&problem, space, shorter, monitor) {
+                Err(heavy @ Error::Infeasible { .. }) if problem.limits.limit_torque() => {
+                    too_heavy.get_or_insert(heavy);
+                    continue;
+                }
+                other => other?,
+            };
             if plan.violations.is_empty() {
                 return Ok((plan, ends));
             }
             first_plan.get_or_insert((plan, ends));
         }
-        first_plan.ok_or(Error::Interrupted)
+        first_plan.ok_or(too_heavy.unwrap_or(Error::Interrupted))
     }
 
     /// The way from one configuration to another beside the path: back along the axis of the tool and the same way forth, by lines as long

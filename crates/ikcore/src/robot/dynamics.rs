@@ -60,7 +60,7 @@ impl Robot {
         let (link, inertia) = match link {
             Some(link) => (link, inertia),
             None => {
-                self.require_one_tip("with_payload")?;
+                self.require_tip_of_payload()?;
                 let tip = self.link_names().last().unwrap_or_default();
                 (tip, MassMoments::of(&inertia).moved(&Frame::from(self.tool())).inertia())
             }
@@ -72,6 +72,15 @@ impl Robot {
             masses.payloads.push(LinkInertia { link: link.into(), inertia });
         }
         Ok(self.with_masses(masses))
+    }
+
+    /// Checks that there is one tip that can carry a payload.
+    fn require_tip_of_payload(&self) -> Result<()> {
+        let remedy = message!["give the one that carries the payload as ", Setting::CarryingLink];
+        match self.require_one_tip("with_payload") {
+            Err(Error::SeveralTips { call, tips, .. }) => Err(Error::SeveralTips { call, tips, remedy }),
+            other => other,
+        }
     }
 
     /// Copy of the robot under this acceleration of free fall, in the frame of the robot's base (m/s^2).

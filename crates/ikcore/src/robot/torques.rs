@@ -48,7 +48,7 @@ impl Robot {
     /// Joint torques (m, n) (N m, or N for prismatic joints) that cause the motions, friction included. At rest they hold the arm up.
     ///
     /// # Errors
-    /// [`Error::NoDynamics`]; [`Error::WrongLength`] and [`Error::NotFinite`] name row and joint.
+    /// [`Error::NoDynamics`]; [`Error::WrongLength`] and [`Error::NotFinite`] name row and joint, [`Error::OutOfRange`] a torque that overflows.
     pub fn torques_all(&self, motions: &Motions) -> Result<Vec<f64>> {
         let dynamics = self.dynamics()?;
         let rows = self.rows_of("joint angles", motions.q)?;
@@ -77,6 +77,7 @@ impl Robot {
                 }
                 dynamics.inverse(&state, &applied, scratch, torques);
             }
+            self.require_in_range("torque", &torques)?;
             Ok(torques)
         })
     }
@@ -121,6 +122,7 @@ impl Robot {
                     joint: self.joints()[joint].name.clone(),
                 })?;
             }
+            self.require_in_range("acceleration", &accelerations)?;
             Ok(accelerations)
         })
     }
@@ -159,6 +161,15 @@ impl Robot {
             dynamics.center_of_mass_and_rates(&scratch.frames, columns)
         });
         Frame { origin, ..Frame::IDENTITY }
+    }
+
+    /// Checks that results (m, n) fit into numbers.
+    fn require_in_range(&self, what: &str, results: &[f64]) -> Result<()> {
+        let Some(i) = results.iter().position(|result| !result.is_finite()) else { return Ok(()) };
+        let (row, joint) = (i / self.dof(), &self.joints()[i % self.dof()].name);
+        let row = if results.len() > self.dof() { format!(", row {row},") } else { String::new() };
+        let what = format!("{what} of joint '{joint}' of robot '{}'{row}", self.name());
+        Err(Error::out_of_range(what, "a number that floats can hold: what causes it is too large", results[i]))
     }
 
     /// Checks that `values` has one complete and finite row for each of q, which has this length.

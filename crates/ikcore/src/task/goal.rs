@@ -1,6 +1,6 @@
 //! Secondary goals: costs on the joints in the null space of the task.
 
-use super::least_torque::{LeastTorque, check_torque_scale};
+use super::least_torque::{LeastTorque, check_numbers, check_torque_scale};
 use crate::error::{Error, Result, require_positive};
 use crate::manipulability::{Manipulability, Motion};
 use crate::message::{Setting, message};
@@ -112,7 +112,8 @@ impl Goal {
     /// Checks the numbers of the goal.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a weight or a distance that is not positive; of the weights of joints, one must be.
+    /// [`Error::OutOfRange`] for a weight, a distance or a torque that is not positive; of the weights of joints, one must be.
+    /// [`Error::Contradiction`] for torques of which none is finite.
     pub fn validate_numbers(&self) -> Result<()> {
         if let Self::WeightedPosture { weights, .. } = self
             && let Some(j) = weights.iter().position(|weight| !(*weight >= 0.0 && weight.is_finite()))
@@ -120,7 +121,11 @@ impl Goal {
             return Err(Error::out_of_range(format!("weight[{j}] of a goal"), "zero or more, and finite", weights[j]));
         }
         require_positive("weight of a goal", self.weight())?;
-        if let Self::Clearance { up_to, .. } = self { require_positive("up_to", *up_to) } else { Ok(()) }
+        match self {
+            Self::Clearance { up_to, .. } => require_positive("up_to", *up_to),
+            Self::LeastTorque { relative_to: Some(scale), .. } => check_numbers(scale),
+            _ => Ok(()),
+        }
     }
 
     /// Checks the goal against the robot; `among_obstacles` is true if collisions are checked.

@@ -16,23 +16,29 @@ pub(super) struct LeastTorque {
     torques: Point,
 }
 
-/// Checks what the torques of `robot` are compared with: positive numbers, one for each joint, of which one is finite.
-pub(super) fn check_torque_scale(robot: &Robot, relative_to: Option<&[f64]>) -> Result<()> {
-    robot.dynamics()?;
-    let Some(scale) = relative_to else { return Ok(()) };
-    let what = "relative_to of the goal LeastTorque";
-    if scale.len() != robot.dof() {
-        let expected = format!("{} (one per joint)", robot.dof());
-        return Err(Error::WrongLength { what: what.into(), expected, got: scale.len() });
-    }
+const SCALE: &str = "relative_to of the goal LeastTorque";
+
+/// Checks numbers that torques are compared with: positive ones, of which one is finite.
+pub(super) fn check_numbers(scale: &[f64]) -> Result<()> {
     if let Some(j) = scale.iter().position(|torque| !(*torque > 0.0)) {
-        let what = format!("{what}, joint '{}',", robot.joints()[j].name);
+        let what = format!("{SCALE}, entry {j},");
         return Err(Error::out_of_range(what, "positive, infinite for a joint that does not count", scale[j]));
     }
     if scale.iter().all(|torque| torque.is_infinite()) {
         return Err(Error::Contradiction {
-            problem: format!("{what} is infinite for all joints: none would count").into(),
+            problem: format!("{SCALE} is infinite for all joints: none would count").into(),
         });
+    }
+    Ok(())
+}
+
+/// Checks that `robot` has torques, and as many joints as there are numbers.
+pub(super) fn check_torque_scale(robot: &Robot, relative_to: Option<&[f64]>) -> Result<()> {
+    robot.dynamics()?;
+    let Some(scale) = relative_to else { return Ok(()) };
+    if scale.len() != robot.dof() {
+        let expected = format!("{} (one per joint)", robot.dof());
+        return Err(Error::WrongLength { what: SCALE.into(), expected, got: scale.len() });
     }
     Ok(())
 }

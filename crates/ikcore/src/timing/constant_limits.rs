@@ -409,21 +409,23 @@ impl ConstantLimits {
                 }
             }
         }
+        found.extend(self.whole_violations(trajectory));
+        found
+    }
+
+    /// The limits of tips and torques that `trajectory` exceeds.
+    pub(crate) fn whole_violations(&self, trajectory: &Trajectory) -> Vec<Violation> {
         let of_tips = self.tips.iter().flat_map(|tips| tips.excesses(trajectory));
-        found.extend(of_tips.map(|TipExcess { what, value, bound, unit }| Violation {
-            what,
-            value,
-            bound,
-            unit: unit.into(),
-        }));
+        let of_tips =
+            of_tips.map(|TipExcess { what, value, bound, unit }| Violation { what, value, bound, unit: unit.into() });
         let of_torques = self.torques.iter().flat_map(|torques| torques.excesses(trajectory));
-        found.extend(of_torques.map(|TorqueExcess { joint, value, bound }| Violation {
+        let of_torques = of_torques.map(|TorqueExcess { joint, value, bound }| Violation {
             what: format!("torque of joint '{}'", self.joint_name(joint)),
             value,
             bound,
             unit: self.torque_unit(joint).into(),
-        }));
-        found
+        });
+        of_tips.chain(of_torques).collect()
     }
 
     /// Whether the motion of the robot as a whole is limited: that of its tips, or the torques of its joints.
@@ -483,6 +485,17 @@ impl ConstantLimits {
     pub(crate) fn too_heavy(&self, q: &[f64]) -> Option<String> {
         let torques = self.torques.as_ref()?;
         torques.too_heavy(&mut torques.point(), q).map(|found| self.heavy_in_words(found))
+    }
+
+    /// Checks that the joints can hold the arm at `q`, which `what` names.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] names joint, torque and limit.
+    pub(crate) fn refuse_too_heavy(&self, what: &str, q: &[f64]) -> Result<()> {
+        match self.too_heavy(q) {
+            None => Ok(()),
+            Some(heavy) => Err(Error::Infeasible { problem: format!("at {what} {heavy}").into() }),
+        }
     }
 
     /// Says which joint cannot hold the arm, and why.

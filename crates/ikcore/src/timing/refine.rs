@@ -1,13 +1,14 @@
 //! Adaptive refinement of the grid.
 //!
-//! The profile keeps every limit over whole segments, which takes longer than the fastest motion does. What a segment loses by that falls with
-//! the square of its length: halving it once tells how much is left. So does a motion that keeps the limits only on average.
+//! A profile keeps the limits over whole segments and is therefore slower than the fastest motion. The time that a segment loses is proportional
+//! to the square of its length. Comparing a profile with one on halved segments, or with one that keeps limits only on average over each
+//! segment, estimates the loss.
 
 use super::grid::{MAX_GRIDPOINTS, Segment};
 use super::reachability::SpeedProfile;
 use crate::error::Result;
 
-/// The part of the allowed loss that a new grid aims at, since what it will lose is an estimate.
+/// Fraction of the allowed loss that a new grid aims at, because losses are estimates.
 const AIM: f64 = 0.6;
 
 /// Most halvings of a segment from one grid to the next.

@@ -100,8 +100,8 @@ impl Strips {
 
     /// Computes the strips of a segment with these `derivatives` of the path and this `length`.
     ///
-    /// On the segment d2q/dt2 = q'(s) u + q''(s) x(s), with x(s) = x + 2 u (s - s_i), is a quadratic in s. Bounds on
-    /// its three Bernstein coefficients bound it at every point, not only at grid points.
+    /// On the segment, d2q/dt2 = q'(s) u + q''(s) x(s) with x(s) = x + 2 u (s - s_i): a quadratic in s. Limits on its three Bernstein
+    /// coefficients therefore hold at every point of the segment. For limits kept on average the mean of the coefficients is limited.
     pub(super) fn fill(
         &mut self,
         derivatives: &PathDerivatives,

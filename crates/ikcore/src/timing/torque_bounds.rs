@@ -111,7 +111,7 @@ impl KeptTorque {
                 let b = side * b + rest_b + drag.per_square;
                 let both = [side * a + rest_a, side * a - rest_a];
                 let of_x = b.max(0.0) * most[1];
-                // Where any x leaves room for both directions, the steeper of two half-planes that face the same way is within the other.
+                // If no x alone exceeds the limit, and both half-planes bound u from the same side, the steeper one implies the other.
                 let steeper = usize::from(both[1].abs() > both[0].abs());
                 let is_one = of_x <= c && both[0] * both[1] > 0.0;
                 let binds = |(k, a): &(usize, f64)| !(a.abs() * most[0] + of_x <= c || is_one && *k != steeper);

@@ -20,10 +20,23 @@ const MILD: f64 = 0.97;
 /// Part of a torque limit beyond which its gradient counts.
 const CLOSE: f64 = 0.8;
 
+/// Part of a torque limit that holds an arm at rest at most: an arm that used all of it could never move away again.
+const LEFT_TO_MOVE: f64 = 0.995;
+
+/// Part of the torque that is left to a limit which a command takes.
+const NEARLY_ALL: f64 = 0.95;
+
+/// Part of a torque limit that an arm may use beyond what holds it, where that is beyond the limit: without it, it could not begin to move.
+const TO_MOVE: f64 = 0.02;
+
 /// Certificate; owns its scratch.
 #[derive(Debug)]
 pub(super) struct StopTorques {
     torques: JointTorques,
+    /// Largest torques (N m, N) of a command and the stop after it: the limits, unless the arm cannot be held where it is.
+    allowed: Point,
+    /// Part of a limit that what holds the arm after the stop has to stay below, of an arm that leaves where it cannot be held.
+    leaving: Option<f64>,
     point: TorquePoint,
     bend: BendScratch,
     /// Distances from parabolas over an interval of one tick to either side.
@@ -77,14 +90,41 @@ impl StopTorques {
         let (n, point, bend) = (torques.dof(), torques.point(), torques.bend_scratch());
         let (rests, ends, beyond) = (vec![[0.0; 3]; n], Vec::with_capacity(3 * n), Point::from_elem(0.0, n));
         let gradients = vec![0.0; n * n];
-        Ok(Some(Self { torques, point, bend, rests, ends, gradients, beyond }))
+        let allowed = Point::from_slice(torques.limits());
+        Ok(Some(Self { torques, allowed, leaving: None, point, bend, rests, ends, gradients, beyond }))
+    }
+
+    /// Allows the torques that an arm needs which cannot be held at `q`, nor where it comes to `rest`: those that hold it at either, and a
+    /// little more to move, until [`allow_limits`](Self::allow_limits). After a command and its stop it has to be easier to hold than at `rest`.
+    pub fn allow_holding(&mut self, q: &[f64], rest: &[f64]) {
+        for held_at in [q, rest] {
+            let held = self.held_at(held_at);
+            self.leaving = Some(self.share(&held));
+            for (j, limit) in
+                self.torques.limits().iter().enumerate().filter(|(j, limit)| held.torques[*j].abs() > **limit)
+            {
+                let to_move = TO_MOVE * limit + self.torques.friction(j).dry;
+                self.allowed[j] = self.allowed[j].max(held.torques[j].abs() + to_move);
+            }
+        }
+    }
+
+    /// Allows what the limits do.
+    pub fn allow_limits(&mut self) {
+        self.allowed.copy_from_slice(self.torques.limits());
+        self.leaving = None;
     }
 
     /// The joint that can hold the arm at rest at `q` the least, if one cannot.
     pub fn too_heavy(&mut self, q: &[f64]) -> Option<Overload> {
+        let held = self.held_at(q);
+        self.overload(&held, 0, 1.0 + TIGHT)
+    }
+
+    /// The torques that hold the arm at rest at `q`.
+    fn held_at(&mut self, q: &[f64]) -> TickTorques {
         let hold = CommandAndStop::new(q, q, None);
-        let node = self.node(&StoppedMotion { ticks: &hold, command: q, dt: 1.0, bends: false }, 0);
-        self.overload(&node, 0, 1.0 + TIGHT)
+        self.node(&StoppedMotion { ticks: &hold, command: q, dt: 1.0, bends: false }, 0)
     }
 
     /// Checks the command `q` and the stop after it. Returns the largest used part of a limit in the stop.
@@ -96,8 +136,13 @@ impl StopTorques {
         let bends = context.limited.is_some_and(|limited| limited.braking().iter().any(|b| b.jerk < f64::INFINITY));
         let motion = StoppedMotion { ticks: &stop, command: q, dt: context.dt, bends };
         self.within(&motion, 0)?;
-        let at_rest = self.within(&motion, (stop.ticks_to_stop() as usize).saturating_add(1))?;
+        let last = (stop.ticks_to_stop() as usize).saturating_add(1);
+        let at_rest = self.within(&motion, last)?;
         let mut largest = self.share(&at_rest);
+        if self.strains_more(context, largest) {
+            self.beyond.copy_from_slice(&at_rest.torques);
+            return Err(self.overload(&at_rest, last, 0.0).expect("no torque is below zero"));
+        }
         stop.write_phase_ends(&mut self.ends);
         let mut first = 1;
         let mut is_bounded = false;
@@ -122,6 +167,19 @@ impl StopTorques {
         Ok(largest)
     }
 
+    /// Whether holding the arm with this part of a limit leaves too little to move it, and takes more than where the fastest stop ends now.
+    fn strains_more(&mut self, context: &StepContext<'_>, part: f64) -> bool {
+        match self.leaving {
+            Some(most) => part >= most,
+            None if part <= LEFT_TO_MOVE => false,
+            None => {
+                let brake = context.braking();
+                let held = self.held_at(&context.stop_after(&brake).rest());
+                part > self.share(&held) + TIGHT
+            }
+        }
+    }
+
     /// Largest torque relative to its limit, in the command `q` and at the ends of the phases of the stop after it.
     pub fn largest(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
         let stop = context.stop_after(q);
@@ -139,9 +197,9 @@ impl StopTorques {
         self.share(&node)
     }
 
-    /// Calls `take` for each joint that holds the arm at rest at `q` with most of its limit: how far its torque is beyond a part of the limit,
-    /// and the gradient (n,) of its size.
-    pub fn each_hold(&mut self, q: &[f64], mut take: impl FnMut(f64, &[f64])) {
+    /// Calls `take` for each joint that holds the arm at rest at `q` with most of its limit: its index, how far its torque is beyond a part of
+    /// the limit, and the gradient (n,) of its size.
+    pub fn each_hold(&mut self, q: &[f64], mut take: impl FnMut(usize, f64, &[f64])) {
         let n = q.len();
         let Self { torques, point, gradients, .. } = self;
         let mut hold = Point::from_elem(0.0, n);
@@ -151,9 +209,25 @@ impl StopTorques {
             if hold[j].abs() > CLOSE * limit {
                 let gradient = &mut gradients[j * n..(j + 1) * n];
                 gradient.iter_mut().for_each(|slope| *slope *= hold[j].signum());
-                take(hold[j].abs() - MILD * limit, gradient);
+                take(j, hold[j].abs() - MILD * limit, gradient);
             }
         }
+    }
+
+    /// Whether what holds the arm at rest after the command `q` and its stop leaves hardly any torque to move it.
+    pub fn strains_after(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
+        let held = self.held_at(&context.stop_after(q).rest());
+        self.share(&held) > MILD
+    }
+
+    /// Writes the gradient (n,) of what holds the arm at rest at `q` with too much of its limits: the sum of the squares, relative to the limits.
+    pub fn write_strain_gradient(&mut self, q: &[f64], sum: &mut [f64]) {
+        sum.fill(0.0);
+        let limits = Point::from_slice(self.torques.limits());
+        self.each_hold(q, |joint, beyond, gradient| {
+            let weight = beyond.max(0.0) / (limits[joint] * limits[joint]);
+            sum.iter_mut().zip(gradient).for_each(|(sum, slope)| *sum += weight * slope);
+        });
     }
 
     /// Part of the way from the command `brake` to the one with the torques last found beyond a limit, `tick` ticks after it, on which all
@@ -171,12 +245,17 @@ impl StopTorques {
     /// The torques at a tick, which are within their limits.
     fn within(&mut self, motion: &StoppedMotion<'_>, tick: usize) -> std::result::Result<TickTorques, Overload> {
         let node = self.node(motion, tick);
-        let Some(overload) = self.overload(&node, tick, 1.0 - TIGHT) else { return Ok(node) };
+        let is_within = |j: usize| self.torque(&node, j).abs() <= (1.0 - TIGHT) * self.allowed[j];
+        if (0..self.allowed.len()).all(is_within) {
+            return Ok(node);
+        }
+
         let mut hold = Point::from_elem(0.0, node.torques.len());
         self.point.second.fill(0.0);
         self.torques.write_torques(&mut self.point, &mut hold);
         let easing = self.part_between(&hold, &node.torques, &node.rates);
         self.beyond.copy_from_slice(&node.torques);
+        let overload = self.overload(&node, tick, 1.0 - TIGHT).expect("what is allowed is at least the limit");
         Err(Overload { easing, ..overload })
     }
 
@@ -202,7 +281,7 @@ impl StopTorques {
     /// Whether torques over an interval of `half` ticks to either side of its middle are within their limits.
     fn is_bounded(&self, motion: &StoppedMotion<'_>, [start, middle, end]: [&TickTorques; 3], half: f64) -> bool {
         let cubed = half.powi(3);
-        self.torques.limits().iter().enumerate().all(|(j, limit)| {
+        self.allowed.iter().enumerate().all(|(j, limit)| {
             let torques = control_points([start.torques[j], middle.torques[j], end.torques[j]]);
             let most = torques.into_iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
             let [of_hold, of_motion, _] = self.rests[j];
@@ -282,12 +361,12 @@ impl StopTorques {
     /// Part of the way from torques `from` to torques `to` on which all leave room to their limits, with the friction at these velocities.
     fn part_between(&self, from: &[f64], to: &[f64], rates: &[f64]) -> f64 {
         let mut part = 1.0_f64;
-        for (j, limit) in self.torques.limits().iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
+        for (j, limit) in self.allowed.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
             for side in [-1.0, 1.0] {
                 let growth = side * (to[j] - from[j]);
                 let all = limit - side * from[j] - (side * self.drag(rates[j], j)).max(0.0);
-                // Of the little that is left beyond that, half: an arm that holds itself with nearly all of a limit can still move.
-                let room = (all - (1.0 - MILD) * limit).max(0.5 * all);
+                // Of little, nearly all: an arm that holds itself with nearly all of a limit can still move.
+                let room = (all - (1.0 - MILD) * limit).max(NEARLY_ALL * all);
                 if growth > room {
                     part = part.min((room / growth).max(0.0));
                 }

@@ -37,7 +37,7 @@ use crate::wording::said;
 ///         whole pose.
 ///     keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
 ///         path leaves free stays upright.
-///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
+///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
 ///         uniform timing, splines through every second point (Wang et al. 2019), for planar arms.
 ///     objective: quantity to minimise, "time" or "joint_travel".
@@ -51,7 +51,7 @@ use crate::wording::said;
 ///         has tolerances, the accuracy is part of them and must not exceed the smallest.
 ///     breaks: whether the tool may leave the path, with "timed". Where no motion follows the whole path, the plan then leaves it as few times
 ///         as possible: the tool draws back along its axis (by any clear way where that is not free), moves to where another posture can
-///         go on, and comes near again, from rest to rest. What no posture reaches is left out. `Plan.breaks` says where, when and why.
+///         go on, and comes near again, from rest to rest. What no posture reaches, or in none the joints can hold, is left out. `Plan.breaks` says where, when and why.
 ///     solver: solver of the search of "timed", for an arm with redundancy; None: pattern search from the motion
 ///         found first. `TPBSO` has a
 ///         solver of its own.

@@ -176,7 +176,7 @@ impl PyPlan {
     /// a whole and passes exactly the same configurations.
     ///
     /// Args:
-    ///     limits: position, velocity, acceleration and jerk limits; a field left out is the robot's.
+    ///     limits: position, velocity, acceleration, jerk, tip and torque limits; a field left out is the robot's.
     ///
     /// Raises:
     ///     TypeError: limits that are no `Limits`.

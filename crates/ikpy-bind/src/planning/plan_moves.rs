@@ -36,7 +36,7 @@ use crate::wording::said;
 ///     task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
 ///         an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
 ///         arcs whatever their tolerance. None: whole poses.
-///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
+///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.

@@ -32,7 +32,7 @@ use crate::wording::said;
 ///     task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
 ///     keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
 ///         not sampled; `Plan.kept` has the largest errors.
-///     limits: position, velocity, acceleration and jerk limits; None: the robot's.
+///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
 ///         "tpbso" or `TPBSO(...)`: polynomials through a via point, found by a beetle swarm (Wang et al. 2019).
 ///     objective: quantity to minimise, "time", "joint_travel" or "tip_travel".
@@ -51,7 +51,7 @@ use crate::wording::said;
 ///         only if none can be reached. A start_q or end_q at which `keep` does not hold (names the error and its tolerance).
 ///     LimitError: limits that contradict each other or exclude an end; a start farther outside them than start_slack (names the
 ///         joint and the remedy).
-///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit.
+///     InfeasibleError: an arm that cannot stop from start_qd before an obstacle or a position limit, or within tip or torque limits.
 ///     UnsupportedLimit: limits that vary in time; jerk limits with "tpbso" (`Plan.retime` adds them).
 ///
 /// For example:

@@ -41,7 +41,7 @@ const METHOD: &str = "time_optimal";
 ///         parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
 ///         is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
 ///     robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
-///         `tip_turn_speed` of `limits` are kept for its tips. None: no robot, and no limits of tips.
+///         `tip_turn_speed` of `limits` are kept for its tips, and `torque` for its joints. None: no robot, and no limits of tips or torques.
 ///
 /// Equal consecutive rows, as a recording has at rest, are one waypoint. Where the noise of a recording sets the duration, a `UserWarning`
 /// says so: by how much which joint jitters, and the `tolerance` that smooths it.

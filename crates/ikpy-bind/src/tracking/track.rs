@@ -211,7 +211,7 @@ impl PyTrackResult {
 ///     solver: a solver or `WeightedPseudoInverse`, which runs in each tick; None: the model-based rule, which needs one or
 ///         two evaluations per step.
 ///     limits: limits on the joint motion; None: the robot's. Each joint needs a velocity, acceleration or jerk limit;
-///         `Limits(velocity=np.inf)` says that jumps are meant.
+///         `Limits(velocity=np.inf)` says that jumps are meant. Torque limits need acceleration limits, as in `Tracker`.
 ///     goals: one or several of `goals`; each tick moves down their gradient in the null space of the task, by weight times
 ///         dt. They need the model-based rule or `WeightedPseudoInverse`.
 ///     joint_weights: cost of moving each joint (n,), positive: each tick follows the path with the least sum of (weight * dq)^2, so

@@ -12,6 +12,7 @@ from ... import Break, InvalidInputError, Limits, MoveReport, Plan, Stop, plot
 from ..files import can_draw, print_files, results_folder, write_files
 from ..options import SolverName, limit, make_solver
 from ..show import print_json, print_pairs
+from ..summary import carried
 from ..wording import in_options
 
 Budget = Annotated[
@@ -104,6 +105,7 @@ def _summarize(plan: Plan, method: str, seed: int) -> dict[str, Any]:
         "breaks": [_break(each) for each in plan.breaks],
         "largest_velocity": plan.trajectory.max_velocity(),
         "largest_acceleration": plan.trajectory.max_acceleration(),
+        **carried(plan.robot, plan.limits),
         "evaluations": plan.evaluations,
         "elapsed": plan.elapsed,
     }

@@ -29,10 +29,11 @@ pub fn masses_and_torques() -> Vec<Row> {
         "Robot::with_inertias" ImpossibleInertia: panda.with_inertias([("flange", point(-1.0))]), "inertia of link 'flange': the mass is -1 kg: it cannot be negative";
         "Robot::with_payload" UnknownLink: panda.with_payload(Some("hnd"), point(1.0)), "robot 'panda' has no link 'hnd'; its links: base, link_1, link_2, link_3, link_4, link_5, link_6, link_7, flange";
         "Robot::with_payload" ImpossibleInertia: panda.with_payload(None, point(-1.0)), "payload: the mass is -1 kg: it cannot be negative";
-        "Robot::with_payload" SeveralTips: arms().with_payload(None, point(1.0)), "with_payload takes robots with one tip; this one has left_tool and right_tool: load the robot with one of them as its tip";
+        "Robot::with_payload" SeveralTips: arms().with_payload(None, point(1.0)), "with_payload takes robots with one tip; this one has left_tool and right_tool: give the one that carries the payload as the link";
         "Robot::with_gravity" NotFinite: panda.with_gravity([0.0, 0.0, NAN]), "gravity must be finite, but entry 2 is NaN";
         "Inertia::require_possible" ImpossibleInertia: point(NAN).require_possible("hand"), "hand: mass, centre and inertia matrix must be finite, got NaN";
         "Robot::torques_all" NoDynamics: bare.torques_all(&motions(&[0.0; 6], None)), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";
+        "Robot::torques_all" OutOfRange: panda.torques_all(&motions(&[0.0; 7], Some(&[1e160; 7]))), "torque of joint 'panda_joint1' of robot 'panda' must be a number that floats can hold: what causes it is too large, got NaN";
         "Robot::torques_all" WrongLength: panda.torques_all(&motions(&[0.0; 7], Some(&[0.0; 14]))), "joint velocities of robot 'panda': expected 1 rows, as many as there are joint angles, got 2";
         "Robot::torques_all" NotFinite: panda.torques_all(&motions(&[0.0; 7], Some(&[NAN; 7]))), "joint velocities must be finite, but joint 'panda_joint1' of configuration 0 is NaN";
         "Subject::center_of_mass" NoDynamics: Subject::center_of_mass(&arms()), "robot 'pair' has no dynamics: no link has a mass: give its links inertias";

@@ -42,6 +42,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Task::validate" Contradiction: weighed(TaskKind::Pose, &[0.0, 1.0, 1.0, 1.0, 1.0, 1.0]).unwrap().within(within()), "region keeps x, y and z of the base, but weights free some of x, y and z of the target: free all three or none, or take task Position, whose axes are the base's";
         "Task::with_first" Contradiction: Task::from(TaskKind::Position).with_first(First::Position), "task Position has no order of position and orientation ('position' first): take task Pose";
         "Task::target" WrongTarget: weighed(TaskKind::Orientation, &[1.0; 3]).unwrap().target(&Target::Position([0.0; 3])), "task Orientation needs a target pose (4, 4), got a position (3,)";
+        "Goal::validate_numbers" Contradiction: least_torque(Some(vec![f64::INFINITY; 7])).validate_numbers(), "relative_to of the goal LeastTorque is infinite for all joints: none would count";
         "Goal::validate_numbers" OutOfRange: Goal::Centring { weight: 0.0 }.validate_numbers(), "weight of a goal must be positive and finite, got 0";
         "Keep::new" Contradiction: kept(0, Some(unbounded)), "nothing would be kept: all tolerances of the task are infinite, or all its weights zero";
         "Keep::new" Contradiction: kept(0, Some(Task::from(TaskKind::Position).at_level(1))), "what is kept comes before all targets, at every instant: leave out the level of its task, 1";
@@ -49,7 +50,7 @@ pub fn tasks_limits_and_solvers() -> Vec<Row> {
         "Goal::validate" Contradiction: Goal::Clearance { up_to: 0.1, weight: 1.0 }.validate(&two(), false), "the goal Clearance is for calls with obstacles (perhaps none) or self-collision";
         "Goal::validate" NoDynamics: least_torque(None).validate(&robot("ur5e"), false), "robot 'ur5e' has no dynamics: no link has a mass: give its links inertias";
         "Goal::validate" WrongLength: least_torque(Some(vec![1.0])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque: expected 7 (one per joint), got 1";
-        "Goal::validate" OutOfRange: least_torque(Some(vec![0.0; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque, joint 'panda_joint1', must be positive, infinite for a joint that does not count, got 0";
+        "Goal::validate" OutOfRange: least_torque(Some(vec![0.0; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque, entry 0, must be positive, infinite for a joint that does not count, got 0";
         "Goal::validate" Contradiction: least_torque(Some(vec![f64::INFINITY; 7])).validate(&robot("panda"), false), "relative_to of the goal LeastTorque is infinite for all joints: none would count";
         "Algorithm::validate" OutOfRange: Algorithm::from(NewtonRaphson { step_fraction: 0.0 }).validate(), "step_fraction must be above 0 and at most 1, got 0";
         "DerivativeFree::validate" OutOfRange: DerivativeFree::from(Bas { c1: 0.0, ..Bas::default() }).validate(), "c1 must be positive and finite, got 0";

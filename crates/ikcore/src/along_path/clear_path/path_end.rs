@@ -49,6 +49,9 @@ pub(super) fn why_it_ends(
         if let Some(broken) = passage.problem.keeps.broken_at(&next) {
             return format!("what is to be kept would not hold: {broken}");
         }
+        if let Some(heavy) = passage.problem.limits.too_heavy(&next) {
+            return heavy;
+        }
         let blocked = space.filter(|_| !passage.is_clear(fraction, &next));
         if let Some(near) = blocked.and_then(|space| Some((space.clearance(&next).nearest?, space.margin()))) {
             return format!("{} there", near.0.contact.in_words(near.1));

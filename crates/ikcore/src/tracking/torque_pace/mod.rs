@@ -4,13 +4,8 @@
 //! certified is tried with a milder stop, or moved towards the command that brakes, which was certified with the command before. Where there
 //! is room, the stop becomes harder again. Where the joints could not hold the arm at rest after a command, it is led aside first.
 
-use super::around_arm::{Response, require_constant};
-use super::constrained_step::{ConstrainedStep, StepRequest, Towards};
-use super::safety_filter::SafetyFilter;
-use super::step_context::StepContext;
-use super::stop_torques::{Overload, StopTorques};
-use super::tip_pace::TipPace;
-use super::tracked_arm::TrackedArm;
+mod unloading;
+
 use crate::error::{Error, Result};
 use crate::limits::{Field, Limits};
 use crate::math::MAX_DOF;
@@ -20,6 +15,13 @@ use crate::message::{Message, Setting, message};
 use crate::objective::Point;
 use crate::robot::{JointKind, Robot};
 use crate::task::Aims;
+use crate::tracking::around_arm::{Response, require_constant};
+use crate::tracking::constrained_step::{ConstrainedStep, StepRequest, Towards};
+use crate::tracking::safety_filter::SafetyFilter;
+use crate::tracking::step_context::StepContext;
+use crate::tracking::stop_torques::{Overload, StopTorques};
+use crate::tracking::tip_pace::TipPace;
+use crate::tracking::tracked_arm::TrackedArm;
 use crate::wording::number;
 
 /// Commands tried in a tick beside the one asked for.
@@ -42,6 +44,9 @@ const OTHER_PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, LEAST_PART];
 /// Ratio of the torques of two stops that are not certified below which the milder one is taken, and the mildest of these.
 const CLEARLY_LESS: f64 = 0.97;
 const MILDEST: f64 = 0.25;
+
+/// Part of the acceleration limits with which an arm brakes where hardly any torque is left to do so.
+const GENTLE: f64 = 0.01;
 
 /// Part of a command above which a torque limit only slows it.
 const SLOWED: f64 = 0.1;
@@ -69,6 +74,8 @@ enum Known {
     Certified,
     /// It was chosen, though none was found that is within them.
     Chosen,
+    /// No torque in it is notably beyond its limit and what holds the arm, which goes to where it can be held.
+    Leaving,
     /// Nothing, since masses have changed or the arm was put elsewhere.
     Nothing,
 }
@@ -154,7 +161,7 @@ impl TorquePace {
 
     /// Looks whether the rest of a chosen stop, which begins with the command `q`, is within the limits. Returns false if nothing was chosen.
     pub fn goes_on_with_stop(&mut self, arm: &TrackedArm, q: &[f64]) -> bool {
-        if self.known == Known::Chosen && self.within(arm, q).is_ok() {
+        if matches!(self.known, Known::Chosen | Known::Leaving) && self.within(arm, q).is_ok() {
             self.known = Known::Certified;
         }
         self.known != Known::Nothing
@@ -163,7 +170,8 @@ impl TorquePace {
     /// What holds the arm back, in words.
     pub fn held_in_words(&self, robot: &Robot) -> Option<String> {
         let verb = if self.is_certified() { "would need" } else { "needs" };
-        self.held_by.as_ref().map(|overload| overload.in_words(verb, robot))
+        let more = if self.known == Known::Leaving { "; the arm goes to where it needs less" } else { "" };
+        self.held_by.as_ref().map(|overload| overload.in_words(verb, robot) + more)
     }
 
     /// Whether a limit holds an arm back whose squared error was `last` in the tick before and is `value` after one of `dt` (s).
@@ -185,6 +193,7 @@ impl TorquePace {
     /// it before. Returns whether it did.
     pub fn keep(&mut self, arm: &mut TrackedArm, mut others: OtherLimits<'_>, settled: bool, q: &mut Point) -> bool {
         match self.within(arm, q) {
+            Ok(_) if self.known == Known::Leaving && self.leaves_on(arm, &mut others, q) => true,
             Ok(used) => {
                 self.known = Known::Certified;
                 self.free_for += arm.dt;
@@ -216,18 +225,72 @@ impl TorquePace {
         mut failed: Option<Overload>,
         q: &mut Point,
     ) -> f64 {
-        let (mut part, stop_part) = (1.0, arm.braking_part());
+        let stop_part = arm.braking_part();
         if failed.is_some_and(|overload| overload.is_at_rest) {
             self.lead_aside(&arm.context(), q);
             failed = match self.check(arm, others, q) {
                 Ok(()) => {
                     self.known = Known::Certified;
-                    return part;
+                    return 1.0;
                 }
                 Err(found) => found,
             };
         }
-        let (brake, wanted) = (arm.context().braking(), q.clone());
+        let (wanted, brake) = (q.clone(), arm.context().braking());
+        let mut part = self.shorten(arm, others, failed, &wanted, q);
+        if part < SLOWED && GENTLE < stop_part && self.stop.strains_after(&arm.context(), &brake) {
+            // Where little torque is left to brake with, the arm creeps unless it brakes gently.
+            let (found, found_stop) = (q.clone(), arm.braking_part());
+            let gently = self.nearest(arm, others, GENTLE, &wanted, q);
+            if gently > part {
+                part = gently;
+            } else {
+                q.copy_from_slice(&found);
+                arm.set_braking_part(found_stop);
+            }
+        }
+        if part > 0.0 {
+            self.known = Known::Certified;
+            return part;
+        }
+        arm.set_braking_part(stop_part);
+        q.copy_from_slice(&arm.context().braking());
+        if !(self.is_certified() || self.cannot_stay(arm) && self.unload(arm, others, &wanted, q)) {
+            self.stop_somehow(arm, others, q);
+        }
+        0.0
+    }
+
+    /// Writes the command nearest to `wanted` into `q` that is certified with a stop of this part of the acceleration limits, or a milder one.
+    /// Returns the part of it that is left; 0 if none is found.
+    fn nearest(
+        &mut self,
+        arm: &mut TrackedArm,
+        others: &mut OtherLimits<'_>,
+        stop_part: f64,
+        wanted: &[f64],
+        q: &mut Point,
+    ) -> f64 {
+        arm.set_braking_part(stop_part);
+        q.copy_from_slice(wanted);
+        match self.check(arm, others, q) {
+            Ok(()) => 1.0,
+            Err(failed) => self.shorten(arm, others, failed, wanted, q),
+        }
+    }
+
+    /// Shortens the command `wanted`, which `failed`, until it is certified, and brakes more mildly after it where that helps. Returns the part
+    /// of it that is left in `q`; 0 if none is found.
+    fn shorten(
+        &mut self,
+        arm: &mut TrackedArm,
+        others: &mut OtherLimits<'_>,
+        mut failed: Option<Overload>,
+        wanted: &[f64],
+        q: &mut Point,
+    ) -> f64 {
+        let mut part = 1.0;
+        let brake = arm.context().braking();
         for _ in 0..TRIES {
             let milder =
                 failed.map_or(0.0, |found| if found.tick > 0 { found.easing * arm.braking_part() } else { 0.0 });
@@ -239,19 +302,11 @@ impl TorquePace {
             if part < SHORTEST {
                 break;
             }
-            write_within(&brake, &wanted, part, q);
+            write_within(&brake, wanted, part, q);
             failed = match self.check(arm, others, q) {
-                Ok(()) => {
-                    self.known = Known::Certified;
-                    return part;
-                }
+                Ok(()) => return part,
                 Err(found) => found,
             };
-        }
-        arm.set_braking_part(stop_part);
-        q.copy_from_slice(&brake);
-        if !self.is_certified() {
-            self.stop_somehow(arm, others, q);
         }
         0.0
     }
@@ -262,7 +317,7 @@ impl TorquePace {
         let slope = Response::new(context, &rest).slope;
         let rows = &mut self.rows.rows;
         rows.clear();
-        self.stop.each_hold(&rest, |beyond, gradient| {
+        self.stop.each_hold(&rest, |_, beyond, gradient| {
             let mut row = Row { gradient: [0.0; MAX_DOF], least: beyond, softness: SOFTNESS };
             (0..q.len()).for_each(|j| row.gradient[j] = -gradient[j] * slope[j]);
             row.least += dot(&row.gradient[..q.len()], q);
@@ -344,7 +399,11 @@ impl Overload {
         let joint = &robot.joints()[self.joint];
         let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N m" };
         let [torque, limit] = [self.torque.abs(), self.limit].map(number);
-        let what = if self.is_at_rest { "hold the arm" } else { "move the arm" };
+        let what = match self.is_at_rest {
+            true if self.torque.abs() < self.limit => "hold the arm, which leaves too little to move it",
+            true => "hold the arm",
+            false => "move the arm",
+        };
         format!("joint '{}' {verb} {torque} {unit} to {what}, its limit is {limit} {unit}", joint.name)
     }
 }
