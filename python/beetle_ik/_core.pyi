@@ -4388,6 +4388,7 @@ def plan_moves(
     moves: Iterable[Move],
     *,
     start_q: ArrayLike,
+    task: Task | None = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -4410,6 +4411,9 @@ def plan_moves(
         robot: the arm.
         moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
         start_q: joint positions (n,) at the start.
+        task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
+            an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
+            arcs whatever their tolerance. None: whole poses.
         limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         obstacles: a `Scene` or a list of obstacles to keep clear of.
         margin: least distance from obstacles and between links (m); None: 1 mm.
@@ -4426,7 +4430,7 @@ def plan_moves(
         InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
             arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
             collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
-            bodies.
+            bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to.
         LimitError: limits that contradict each other; a start or joint positions outside them.
         UnsupportedLimit: limits that vary in time, or no acceleration limits.
 

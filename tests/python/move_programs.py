@@ -25,6 +25,38 @@ SLOWER = 1.5e-3
 STEP = 1e-6
 """Step of finite differences (s)."""
 
+Turned = Callable[[Array, Rotation], Array]
+"""What counts of the turns between orientations (m, 3, 3) and those due: angles (m,)."""
+
+
+def whole(orientations: Array, due: Rotation) -> Array:
+    return (Rotation.from_matrix(orientations) * due.inv()).magnitude()
+
+
+def of_axis(axis: Array, tolerance: float = 0.0) -> Turned:
+    """The angle between directions of an axis of the tip, beyond a tolerance; its spin is free."""
+    unit = np.asarray(axis) / np.linalg.norm(axis)
+
+    def turned(orientations: Array, due: Rotation) -> Array:
+        between = np.linalg.norm(orientations @ unit - due.apply(unit), axis=1)
+        return np.maximum(2.0 * np.arcsin(np.minimum(0.5 * between, 1.0)) - tolerance, 0.0)
+
+    return turned
+
+
+def of_vector(tolerance: Array) -> Turned:
+    """The entries of the rotation vector in the axes of the target, beyond a tolerance each."""
+
+    def turned(orientations: Array, due: Rotation) -> Array:
+        vectors = (due.inv() * Rotation.from_matrix(orientations)).as_rotvec()
+        return np.linalg.norm(np.maximum(np.abs(vectors) - tolerance, 0.0), axis=1)
+
+    return turned
+
+
+def nothing(orientations: Array, _: Rotation) -> Array:
+    return np.zeros(len(orientations))
+
 
 @dataclass
 class Curve:
@@ -36,14 +68,13 @@ class Curve:
     at: Callable[[Array], Array]
     nearest: Callable[[Array], Array]
 
-    def errors(self, poses: Array) -> tuple[Array, Array]:
-        """Distances from the curve (m), and angles from the uniform turn (rad)."""
+    def errors(self, poses: Array, turned: Turned = whole) -> tuple[Array, Array]:
+        """Distances from the curve (m), and angles from the uniform turn (rad), as far as it counts."""
         s = self.nearest(poses[:, :3, 3])
         distances = np.linalg.norm(self.at(s) - poses[:, :3, 3], axis=1)
         turn = Rotation.from_matrix(self.end[:3, :3] @ self.start[:3, :3].T).as_rotvec()
         expected = Rotation.from_rotvec(np.outer(s / self.length, turn)) * Rotation.from_matrix(self.start[:3, :3])
-        angles = (Rotation.from_matrix(poses[:, :3, :3]) * expected.inv()).magnitude()
-        return distances, angles
+        return distances, turned(poses[:, :3, :3], expected)
 
 
 def line(start: Array, end: Array) -> Curve:
@@ -154,8 +185,14 @@ def faults(
     plan: bik.Plan,
     limits: dict[str, Array],
     samples: int = 10_000,
+    turned: Turned = whole,
 ) -> list[str]:
-    """What is wrong with the motion of a program, in words."""
+    """What is wrong with the motion of a program, in words; `turned` says what counts of orientations."""
+
+    def misses(reached: Array, pose: Array) -> bool:
+        angle = turned(reached[None, :3, :3], Rotation.from_matrix(pose[None, :3, :3]))[0]
+        return bool(np.abs(reached[:3, 3] - pose[:3, 3]).max() > 1e-6 or angle > 2e-6)
+
     found: list[str] = []
     trajectory = plan.trajectory
     t = np.linspace(0.0, trajectory.duration, samples)
@@ -193,7 +230,7 @@ def faults(
                     found.append(f"move {i} passes its end outside of the ball of its blend")
             elif goal.ndim == 1 and np.abs(end - goal).max() > 1e-9:
                 found.append(f"move {i} ends at {end}, not at {goal}")
-            elif np.abs(reached - pose).max() > 1e-6:
+            elif misses(reached, pose):
                 found.append(f"move {i} ends at another pose")
             start, blend_before = pose, blend
             continue
@@ -209,7 +246,7 @@ def faults(
             begin, end = curve.at(np.array([0.0, curve.length]))
             near = [np.linalg.norm(poses[:, :3, 3] - corner, axis=1) for corner in (begin, end)]
             on_curve = on & (near[0] >= blend_before) & (near[1] >= blend)
-            distances, angles = curve.errors(poses)
+            distances, angles = curve.errors(poses, turned)
             if distances[on_curve].max(initial=0.0) > ON_PATH:
                 found.append(f"move {i} is {distances[on_curve].max()} m off its path")
             if angles[on_curve].max(initial=0.0) > TURNED:
@@ -219,7 +256,7 @@ def faults(
             )
             if strayed.any():
                 found.append(f"move {i} leaves the ball of its blend")
-            if blend == 0.0 and np.abs(fk(np.asarray(trajectory.at(report.end)[0])[None])[0] - curve.end).max() > 1e-6:
+            if blend == 0.0 and misses(fk(np.asarray(trajectory.at(report.end)[0])[None])[0], curve.end):
                 found.append(f"move {i} does not end at its pose")
             if move.get("speed") is not None:
                 # A difference quotient across a change of acceleration is off by a little.

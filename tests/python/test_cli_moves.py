@@ -38,8 +38,34 @@ def test_a_program_of_a_file_is_planned(tmp_path: Path) -> None:
     assert "move 0 'above'" in shown.stdout
 
 
+def test_the_task_of_a_file_leaves_the_spin_free(tmp_path: Path) -> None:
+    turned = [DOWN[0], DOWN[1], 1.5]
+    lines = [
+        {"move": "joints", "to": [0.4, -0.1, 0.3, *DOWN]},
+        {"move": "line", "to": [0.4, 0.0, 0.3, *turned]},
+    ]
+    task = {"kind": "pointing", "axis": [0, 0, 1], "tool": [0, 0, 0, 0, 0, 0]}
+    whole, free = (
+        json.loads(planned(tmp_path / "program.json", program, "--json").stdout)
+        for program in ({"moves": lines}, {"moves": lines, "task": task})
+    )
+    assert free["moves"][-1]["end"] < 0.9 * whole["moves"][-1]["end"]
+
+
 WRONG: list[tuple[Any, str]] = [
-    ({}, "expected a list of moves, got dict"),
+    (3, "expected a list of moves, got int"),
+    ({}, "a program needs 'moves', a list; it may have a 'task'"),
+    ({"moves": [], "tasks": {}}, "unknown key 'tasks'; a program takes moves, task"),
+    ({"moves": [], "task": "pointing"}, "task: expected an object with the key 'kind', got 'pointing'"),
+    ({"moves": [], "task": {"kind": "spin"}}, "task: 'kind' must be one of pose, position, pointing, got 'spin'"),
+    (
+        {"moves": [], "task": {"kind": "position", "axis": [0, 0, 1]}},
+        "task: unknown key 'axis'; a position task takes tolerance, tool, weights",
+    ),
+    (
+        {"moves": [], "task": {"kind": "pointing", "tolerance": [0.1]}},
+        "task: tolerance of task Pointing: expected 4 entries (x, y, z and the angle), got 1",
+    ),
     ([3], "move 0: expected an object with the key 'move', got 3"),
     ([{"move": "jump"}], "move 0: 'move' must be one of joints, line, arc, wait, got 'jump'"),
     ([{"move": "wait", "seconds": 1.0}, {"move": "line"}], "move 1: a line needs 'to'"),

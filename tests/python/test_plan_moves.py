@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mistakes import Invalid
-from move_programs import arc, draw, faults, line, moves_of
+from move_programs import Turned, arc, draw, faults, line, moves_of, nothing, of_axis, of_vector
 
 import beetle_ik as bik
 from beetle_ik.moves import Arc, Joints, Line, Wait
@@ -65,6 +65,47 @@ def test_random_programs_are_made_as_asked(name: str, jerk: bool) -> None:
         assert plan.success
         assert faults(robot, robot.fk, program, plan, limits, samples=3000) == []
     assert made >= 3
+
+
+CONE = 0.1
+TASKS: dict[str, tuple[bik.tasks.Task, Turned]] = {
+    "spin": (bik.tasks.Pointing(axis=(0.0, 0.0, 2.0)), of_axis(np.eye(3)[2])),
+    "cone": (bik.tasks.Pointing(tolerance=(1.0, 1.0, 1.0, CONE)), of_axis(np.eye(3)[2], CONE)),
+    "band": (bik.tasks.Pose(tolerance=(1.0, 1.0, 1.0, 0.05, 0.1, np.inf)), of_vector(np.array([0.05, 0.1, np.inf]))),
+    "position": (bik.tasks.Position(), nothing),
+}
+
+
+def duration(robot: bik.Robot, program: list[dict[str, Any]], start: np.ndarray) -> float | None:
+    """The duration with whole poses (s); None where these cannot be met."""
+    try:
+        return bik.plan_moves(robot, moves_of(program), start_q=start, limits=LIMITS).trajectory.duration
+    except bik.InvalidInputError:
+        return None
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("name", STARTS)
+def test_programs_meet_their_task_and_are_never_slower(name: str, task: str) -> None:
+    robot = bik.Robot.named(name)
+    limits = {"velocity": robot.velocity_limit, "acceleration": np.full(robot.dof, ACCELERATION)}
+    wanted, turned = TASKS[task]
+    made = 0
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        start = STARTS[name] + random.uniform(-0.2, 0.2, robot.dof)
+        program = draw(robot, start, 6, random)
+        whole = duration(robot, program, start)
+        try:
+            plan = bik.plan_moves(robot, moves_of(program), start_q=start, limits=LIMITS, task=wanted)
+        except bik.InvalidInputError:
+            assert whole is None
+            continue
+        made += 1
+        assert plan.success
+        assert whole is None or plan.trajectory.duration <= whole
+        assert faults(robot, robot.fk, program, plan, limits, samples=3000, turned=turned) == []
+    assert made >= 2
 
 
 # The least motion of the first and the third leads into a singularity or a limit. The others pass a singularity so

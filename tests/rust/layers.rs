@@ -146,6 +146,7 @@ const LAYERS: &[(&str, &[&str])] = &[
             "timing",
             "plan",
             "free_path",
+            "along_path",
         ],
     ),
     (

@@ -110,6 +110,7 @@ mod timing {
 mod moves {
     mod at_limits;
     mod programs;
+    mod tasks;
     mod torque_limits;
 }
 mod tpbso {

@@ -15,6 +15,15 @@ SAMPLES = 2000
 OFF_PATH = 1e-5
 SPEED, JERKY, SLOWER = 1e-3, 3e-3, 1.5e-3
 ACCELERATION, JERK = 4.0, 80.0
+TURNED, TOLERANCE = 1e-4, 0.1
+"""Largest angle beyond the task (rad), and tolerance of some tasks."""
+TASKS = {
+    None: "None",
+    "spin": "bik.tasks.Pointing(axis=(0, 0, 2))",
+    "cone": f"bik.tasks.Pointing(tolerance=(1, 1, 1, {TOLERANCE}))",
+    "band": f"bik.tasks.Pose(tolerance=(1, 1, 1, {TOLERANCE}, {TOLERANCE}, {TOLERANCE}))",
+    "position": "bik.tasks.Position()",
+}
 MET, LARGEST_STEP, ROOM = 1e-9, 0.1, 0.02
 """Of the judge's own steps along a line: error (m, rad), largest change of a joint, and its distance from limits."""
 
@@ -35,6 +44,24 @@ def distances(points: Array, start: Array, move: dict[str, Any]) -> Array:
     above = (points - centre) @ normal
     outward = np.linalg.norm(points - centre - above[:, None] * normal, axis=1) - np.linalg.norm(start - centre)
     return np.hypot(above, outward)
+
+
+def beyond(task: str | None, tips: Array, due: Array) -> Array:
+    """Angles (m,) of orientations (m, 3, 3) from those due, beyond what the task leaves free."""
+    if task == "position":
+        return np.zeros(len(tips))
+    if task in ("spin", "cone"):
+        apart = np.linalg.norm(tips[:, :, 2] - due[:, :, 2], axis=1)
+        angles = 2.0 * np.arcsin(np.clip(0.5 * apart, 0.0, 1.0))
+        return np.maximum(angles - (TOLERANCE if task == "cone" else 0.0), 0.0)
+    relative = np.swapaxes(due, 1, 2) @ tips
+    # The rotations here are small, or else they are wrong by more than the sine loses.
+    skew = 0.5 * (relative - np.swapaxes(relative, 1, 2))
+    sines = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=1)
+    size = np.linalg.norm(sines, axis=1, keepdims=True)
+    angle = np.arctan2(size, 0.5 * (np.trace(relative, axis1=1, axis2=2)[:, None] - 1.0))
+    vectors = sines * np.where(size > 0.0, angle / np.maximum(size, 1e-300), 1.0)
+    return np.linalg.norm(np.maximum(np.abs(vectors) - (TOLERANCE if task == "band" else 0.0), 0.0), axis=1)
 
 
 def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Array | None:
@@ -80,6 +107,7 @@ class Programs(Attack):
             "joints": joints,
             "moves": [self._drawn(random, hard, len(arms.free(joints))) for _ in range(random.integers(1, 6))],
             "jerk": bool(random.random() < 0.3),
+            "task": [None, *TASKS][random.integers(len(TASKS) + 1)],
         }
 
     def _drawn(self, random: np.random.Generator, hard: bool, n: int) -> dict[str, Any]:
@@ -125,9 +153,17 @@ class Programs(Attack):
         jerk = f", jerk={JERK}" if case["jerk"] else ""
         lines.append(
             f"limits = bik.Limits(acceleration={ACCELERATION}{jerk})\n"
-            "plan = bik.plan_moves(robot, program, start_q=q, limits=limits)\n"
-            "reports, motion = plan.moves, plan.trajectory"
+            f"task = {TASKS[case.get('task')]}\n"
+            "plan = bik.plan_moves(robot, program, start_q=q, limits=limits, task=task)\n"
+            "reports, motion, whole = plan.moves, plan.trajectory, None"
         )
+        if case.get("task") is not None:
+            lines.append(
+                "try:\n"
+                "    whole = bik.plan_moves(robot, program, start_q=q, limits=limits).trajectory.duration\n"
+                "except bik.InvalidInputError:\n"
+                "    pass  # whole poses may be out of reach"
+            )
         return "\n".join(lines)
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
@@ -142,7 +178,9 @@ class Programs(Attack):
         if np.abs(qd).max() > 1.0 + 1e-9 or np.abs(qdd).max() > ACCELERATION * (1.0 + 1e-9):
             raise BrokenError("a joint is faster than its limits", (np.abs(qd).max(), np.abs(qdd).max()))
         poses, jacobians = arms.kinematics(case["joints"], q)
-        tips = poses[:, :3, 3]
+        if left["whole"] is not None and motion.duration > left["whole"]:
+            raise BrokenError("a program is slower than with whole poses", (motion.duration, left["whole"]))
+        tips, turned = poses[:, :3, 3], poses[0, :3, :3]
         speeds = np.linalg.norm(np.einsum("mij,mj->mi", jacobians[:, :3], qd), axis=1)
         at, before = tips[0], 0.0
         for i, (move, report) in enumerate(zip(case["moves"], reports, strict=True)):
@@ -153,7 +191,8 @@ class Programs(Attack):
                 continue
             if move["kind"] == "joints":
                 goal = np.clip(arms.configurations(case["joints"])[0] + move["q"], lower, upper)
-                at, before = arms.kinematics(case["joints"], goal[None])[0][0, :3, 3], blend
+                reached = arms.kinematics(case["joints"], goal[None])[0][0]
+                at, turned, before = reached[:3, 3], reached[:3, :3], blend
                 continue
             end = at + move["way"]
             clear = on & (np.linalg.norm(tips - at, axis=1) >= before) & (np.linalg.norm(tips - end, axis=1) >= blend)
@@ -161,6 +200,13 @@ class Programs(Attack):
                 off = distances(tips, at, move)[clear].max(initial=0.0)
                 if off > OFF_PATH:
                     raise BrokenError("a move leaves its path", (i, off))
+            if move["kind"] == "line" and np.linalg.norm(move["way"]) > 1e-9:
+                part = (tips - at) @ np.array(move["way"]) / np.dot(move["way"], move["way"])
+                due = arms.turn(turned[:, 0], np.clip(part, 0.0, 1.0) * move["turn"]) @ turned
+                angle = beyond(case.get("task"), poses[:, :3, :3], due)[clear].max(initial=0.0)
+                if angle > TURNED:
+                    raise BrokenError("a move turns the tip beyond its task", (i, angle))
+            turned = arms.turn(turned[:, 0], np.array([move["turn"]]))[0] @ turned
             asked = move["speed"]
             if asked is not None and np.linalg.norm(move["way"]) > 1e-9:
                 said = np.zeros(SAMPLES, bool)

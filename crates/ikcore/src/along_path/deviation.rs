@@ -1,11 +1,9 @@
 //! Deviation of the tip from its path.
 
-use crate::along_path::tip_path::TipPath;
-use crate::math::so3::{norm, rotation_between};
+use crate::along_path::tip_path::{TipPath, angle_between};
+use crate::math::MAX_DOF;
 use crate::math::vector::distance;
-use crate::math::{Frame, MAX_DOF};
 use crate::robot::Robot;
-use crate::task::{Target, Tolerance};
 use crate::timing::{JointPath, Violation};
 
 /// Samples between two knots; the maximum is then refined between the neighbours of the best sample.
@@ -182,17 +180,6 @@ impl<C: Configurations> TipDeviation<'_, C> {
             let distance = self.tip_path.distance(tip.origin, from - length, to + length);
             [distance, angle_between(&due.target, || tip)]
         })
-    }
-}
-
-/// Angle (rad) of the tip from a target's orientation, or from the direction of its axis; 0 for a position.
-fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
-    match target {
-        Target::Pose(due) => norm(&rotation_between(due, &tip())),
-        Target::Pointing { .. } => {
-            target.assess_tip(&tip(), &Tolerance::default().into()).error.rotation.map_or(0.0, f64::sqrt)
-        }
-        Target::Position(_) | Target::Orientation(_) => 0.0,
     }
 }
 

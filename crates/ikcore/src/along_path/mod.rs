@@ -19,4 +19,4 @@ mod tip_path;
 pub(crate) use deviation::{LargestDeviation, TipDeviation};
 pub(crate) use missed_points::missed_points;
 pub use tip_path::TipPath;
-pub(crate) use tip_path::refuse_repetition;
+pub(crate) use tip_path::{Borders, PathTarget, ToleranceBand, refuse_repetition};

@@ -2,6 +2,7 @@
 
 use super::around::{ADVICE_HOLD, MoveSurroundings};
 use super::ladder::Rung;
+use super::move_task::MoveTask;
 use super::moves_options::MovesOptions;
 use super::outline::{Stage, StageKind};
 use super::program::Move;
@@ -13,6 +14,7 @@ use crate::free_path;
 use crate::math::vector::largest_difference;
 use crate::message::Message;
 use crate::plan::{EndTurns, Endpoint, MoveCourse, MoveReport, PointToPointOptions, SpeedBound};
+use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::timing::JointPath;
 use crate::trajectory::{Trajectory, polynomial};
@@ -27,6 +29,9 @@ const NOTHING: f64 = 1e-9;
 /// The motion so far, and its moves.
 pub(super) struct Assembly<'a> {
     around: MoveSurroundings<'a>,
+    /// The robot with the tool of the task, and the task.
+    robot: &'a Robot,
+    task: MoveTask,
     moves: &'a [Move],
     options: &'a MovesOptions,
     /// Configuration at the end.
@@ -36,8 +41,14 @@ pub(super) struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    pub fn new(around: MoveSurroundings<'a>, moves: &'a [Move], options: &'a MovesOptions, start: &[f64]) -> Self {
-        Self { around, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
+    pub fn new(
+        around: MoveSurroundings<'a>,
+        (robot, task): (&'a Robot, MoveTask),
+        moves: &'a [Move],
+        options: &'a MovesOptions,
+        start: &[f64],
+    ) -> Self {
+        Self { around, robot, task, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
     }
 
     /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
@@ -88,7 +99,7 @@ impl<'a> Assembly<'a> {
     /// Adds parts with rounded corners between them where that is possible and clear, else with stops.
     fn go(&mut self, parts: Vec<RunPart<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
         if !radii.is_empty()
-            && let Some(run) = Run::rounded(self.around.robot, self.around.limits, &parts, &radii)?
+            && let Some(run) = Run::rounded(self.robot, &self.task, self.around.limits, &parts, &radii)?
         {
             let motion = self.timed_where_held(&run.path)?;
             let is_better = |motion: &Trajectory| match self.around.is_free() {
@@ -183,7 +194,7 @@ impl<'a> Assembly<'a> {
                 // Corners may take all of it.
                 let between_corners = [window.begin, window.end()].map(|s| time_at(&times, s));
                 let has_way = window.to > window.from;
-                let speed = has_way.then(|| tip_speed(self.around.robot, &motion, between_corners)).transpose()?;
+                let speed = has_way.then(|| tip_speed(self.robot, &motion, between_corners)).transpose()?;
                 self.report(part.index, [start, end_of_part], speed, vec![]);
                 start = end_of_part;
                 continue;
@@ -247,7 +258,7 @@ impl<'a> Assembly<'a> {
 
     /// Adds a motion to the end of a joint move that keeps clear of everything, and keeps what is to be kept.
     fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
-        let MovesOptions { surroundings, keeps, limits, stop, seed } = self.options;
+        let MovesOptions { surroundings, keeps, limits, stop, seed, .. } = self.options;
         let options = PointToPointOptions {
             end_turns: EndTurns::AsGiven,
             surroundings: surroundings.clone(),
@@ -269,7 +280,7 @@ impl<'a> Assembly<'a> {
             return Err(self.not_found(part.index, problem));
         }
         let (start, duration) = (self.now(), plan.trajectory.duration());
-        let speed = tip_speed(robot, &plan.trajectory, [0.0, duration])?;
+        let speed = tip_speed(self.robot, &plan.trajectory, [0.0, duration])?;
         self.push(plan.trajectory)?;
         self.report(part.index, [start, self.now()], Some(speed), vec![]);
         Ok(())

@@ -1,14 +1,15 @@
 //! Joint positions along a path of the tip, from configuration to configuration by Newton's method.
 
+use super::move_task::MoveTask;
 use super::tool_path::ToolPath;
+use crate::along_path::{Borders, PathTarget};
 use crate::error::Result;
 use crate::interrupt::checkpoint_at;
+use crate::math::Frame;
 use crate::math::cubic_spline::SplineEnds;
-use crate::math::so3::{norm, rotation_between};
-use crate::math::vector::{distance, largest_difference};
+use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::robot::Robot;
-use crate::task::{Criterion, Target, Tolerance};
 use crate::timing::{ConstantLimits, JointPath};
 
 /// Steps of Newton's method, and the squared error at which they end (m^2, rad^2).
@@ -34,6 +35,8 @@ const ACCURACY: [f64; 2] = [2e-6, 2e-5];
 const SLOPE_ACCURACY: f64 = 5e-5;
 /// Fractions of an interval at which the tip is looked at.
 const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
+/// Change of the joints (rad, m) between knots that counts as rest: a path in joint space cannot.
+const REST: f64 = 1e-12;
 /// Rounds of refinement, and the most knots.
 const ROUNDS: usize = 16;
 const MOST_KNOTS: usize = 5000;
@@ -64,6 +67,10 @@ pub(super) enum Stray {
         joint: usize,
         value: f64,
     },
+    /// At the length `at` (m) the arm need not move on, so free does its task leave the tip.
+    Still {
+        at: f64,
+    },
 }
 
 impl Track {
@@ -76,6 +83,13 @@ impl Track {
     /// Joint positions at the end.
     pub fn end(&self) -> &[f64] {
         self.row(self.knots.len() - 1)
+    }
+
+    /// The first length at which the joints rest.
+    fn rest(&self) -> Option<f64> {
+        (1..self.knots.len())
+            .find(|i| largest_difference(self.row(i - 1), self.row(*i)) <= REST)
+            .map(|i| self.knots[i - 1])
     }
 
     fn push(&mut self, knot: f64, q: &[f64]) {
@@ -96,6 +110,7 @@ pub(super) struct Lead<'a> {
 /// Follows paths of the tip within a box.
 pub(super) struct Follower<'a> {
     robot: &'a Robot,
+    task: MoveTask,
     bounds: Bounds,
     linearization: Linearization,
     /// Evaluations of the kinematics so far.
@@ -103,17 +118,35 @@ pub(super) struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    pub fn new(robot: &'a Robot, bounds: Bounds) -> Self {
-        Self { robot, bounds, linearization: Linearization::default(), evaluations: 0 }
+    pub fn new(robot: &'a Robot, task: MoveTask, bounds: Bounds) -> Self {
+        Self { robot, task, bounds, linearization: Linearization::default(), evaluations: 0 }
     }
 
     /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
     /// move as little as they can.
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
+        let widened = self.bounds_from(q);
+        // A joint at its limit moves off it where the task leaves it the freedom: a motion along a limit swings beyond.
+        if !self.task.is_whole() && !self.bounds.contains(q) {
+            let inside = self.bounds.clone();
+            if let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside]) {
+                return Ok(track);
+            }
+        }
+        self.follow_within(path, q, lead, [&widened, &widened])
+    }
+
+    /// Follows the path from `q` in the box `first`, and from there on in the box `then`.
+    fn follow_within(
+        &mut self,
+        path: &ToolPath,
+        q: &[f64],
+        lead: Option<&Lead<'_>>,
+        [first, then]: [&Bounds; 2],
+    ) -> Result<Track, Lost> {
         let mut track = Track { knots: vec![0.0], rows: q.to_vec() };
         let mut before = Point::from_slice(q);
-        let bounds = self.bounds_from(q);
-        if !self.project(path, 0.0, &mut before, &bounds) {
+        if !self.project(&self.target(path, 0.0), &mut before, first) {
             return Err(Lost { at: 0.0 });
         }
         track.rows.copy_from_slice(&before);
@@ -121,7 +154,7 @@ impl<'a> Follower<'a> {
             let end = begin + piece.length;
             let longest = LONGEST_STEP.min(PART_OF_TURN * piece.length_per_turn());
             let even = piece.length / (piece.length / longest).ceil().max(2.0);
-            self.follow_piece(path, [*begin, end, even], lead, &bounds, &mut track)?;
+            self.follow_piece(path, [*begin, end, even], lead, then, &mut track)?;
         }
         Ok(track)
     }
@@ -149,14 +182,13 @@ impl<'a> Follower<'a> {
             if let Some(lead) = lead {
                 let part = 1.0 - (-(next - at) / lead.within).exp();
                 q.iter_mut().zip(lead.toward).for_each(|(q, toward)| *q += part * (toward - *q));
-                bounds.clip(&mut q);
             } else if last > 0 {
                 let stretch = (next - at) / (track.knots[last] - track.knots[last - 1]);
                 q.iter_mut().zip(track.row(last - 1)).for_each(|(q, before)| *q += stretch * (*q - before));
-                bounds.clip(&mut q);
             }
+            bounds.clip(&mut q);
             let expected = q.clone();
-            if self.project(path, next, &mut q, bounds)
+            if self.project(&self.target(path, next), &mut q, bounds)
                 && largest_difference(&q, track.row(last)) <= LARGEST_CHANGE
                 && largest_difference(&q, &expected) <= LARGEST_SURPRISE
             {
@@ -172,13 +204,24 @@ impl<'a> Follower<'a> {
         Ok(())
     }
 
-    /// Moves `q` to the nearest configuration with the tip at the length `s`. Returns whether there is one.
-    fn project(&mut self, path: &ToolPath, s: f64, q: &mut [f64], bounds: &Bounds) -> bool {
-        let (target, criterion) = (Target::Pose(path.pose(s)), Criterion::from(Tolerance::default()));
+    /// Moves `q`, inside the box, to the nearest configuration that meets the task at `pose`. Returns whether there is one.
+    pub fn meet(&mut self, pose: &Frame, q: &mut [f64]) -> bool {
+        let bounds = self.bounds_from(q);
+        self.project(&self.task.target(pose), q, &bounds)
+    }
+
+    /// What the tip has to meet at the length `s`.
+    fn target(&self, path: &ToolPath, s: f64) -> PathTarget {
+        self.task.target(&path.pose(s))
+    }
+
+    /// Moves `q` to the nearest configuration that meets a target. Returns whether there is one.
+    fn project(&mut self, target: &PathTarget, q: &mut [f64], bounds: &Bounds) -> bool {
         let (robot, mut value, mut count) = (self.robot, f64::INFINITY, 0);
+        let mut borders = Borders::default();
         self.linearization.project(q, bounds, STEPS, |q, at| {
             let before = value;
-            value = target.linearize(robot, q, &criterion, &mut at.first).score.value;
+            value = target.linearize(robot, q, &mut borders, at);
             count += 1;
             let is_stuck = value >= before && value <= AS_NEAR_AS_SOLVES;
             (!(value <= MET) && !is_stuck).then_some(DAMPING * value)
@@ -199,6 +242,9 @@ impl<'a> Follower<'a> {
     ) -> Result<Result<JointPath, Stray>> {
         let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut coarse = vec![];
+        if let Some(at) = track.rest() {
+            return Ok(Err(Stray::Still { at }));
+        }
         for _ in 0..ROUNDS {
             let joints = JointPath::spline(names.clone(), &track.rows, Some(&track.knots), SplineEnds::NotAKnot)?
                 .inside(&limits.lower, &limits.upper);
@@ -234,9 +280,8 @@ impl<'a> Follower<'a> {
         LOOKS.iter().any(|look| {
             let s = from + look * (to - from);
             joints.position(s, &mut q);
-            let (tip, target) = (self.robot.tip(&q), path.pose(s));
-            distance(&tip.origin, &target.origin) > allowed(ACCURACY[0])
-                || norm(&rotation_between(&target, &tip)) > ACCURACY[1]
+            let [distance, angle] = self.target(path, s).off(&self.robot.tip(&q));
+            distance > allowed(ACCURACY[0]) || angle > ACCURACY[1]
         })
     }
 
@@ -259,7 +304,7 @@ impl<'a> Follower<'a> {
                 let middle = 0.5 * (knot + track.knots[i + 1]);
                 joints.position(middle, &mut q);
                 bounds.clip(&mut q);
-                if !self.project(path, middle, &mut q, &bounds) {
+                if !self.project(&self.target(path, middle), &mut q, &bounds) {
                     return Err(Stray::Lost(Lost { at: middle }));
                 }
                 if let Some((joint, value)) = limits.excess(&q) {

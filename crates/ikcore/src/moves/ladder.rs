@@ -6,28 +6,28 @@
 
 use super::around::MoveSurroundings;
 use super::follower::{Follower, Lead, Lost, Track};
+use super::move_configurations::MoveConfigurations;
+use super::move_task::MoveTask;
 use super::outline::{Stage, StageKind};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
 use crate::error::Result;
-use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
+use crate::ik::{SolveOptions, bring_near};
 use crate::math::Pose;
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Point};
 use crate::robot::{Robot, limit_rounding};
 use crate::solver::Monitor;
-use crate::task::Target;
 use crate::timing::ConstantLimits;
 
 /// Largest number of rungs of a step of the ladder; the quickest are kept.
 const MOST_RUNGS: usize = 24;
 
-/// Values of the redundancy at which a pose is solved.
-const REDUNDANCY: usize = 16;
-
 /// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
 const MOST_FOLLOWED: usize = 48;
 const ENOUGH: usize = 6;
+/// The same where the task leaves a part of the pose free: the nearest ones are directions of one branch.
+const ENOUGH_FREE: usize = 24;
 
 /// Configurations that the self-motion is led to, and those at a pose that are led so, where no path is followed without.
 const MOST_LED_TO: usize = 12;
@@ -115,18 +115,19 @@ pub(super) struct Ladder<'a> {
     robot: &'a Robot,
     limits: &'a ConstantLimits,
     around: MoveSurroundings<'a>,
-    /// Whether the tip's pose leaves the arm a self-motion.
+    /// Whether what the tip has to meet leaves the arm a self-motion.
     is_redundant: bool,
     follower: Follower<'a>,
+    task: MoveTask,
     each: SolveOptions,
     /// Evaluations of the kinematics so far.
     pub evaluations: usize,
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(around: MoveSurroundings<'a>, each: SolveOptions) -> Self {
-        let MoveSurroundings { robot, limits, .. } = around;
-        let is_redundant = robot.dof() > 6;
+    pub fn new(around: MoveSurroundings<'a>, (robot, task): (&'a Robot, MoveTask), each: SolveOptions) -> Self {
+        let limits = around.limits;
+        let is_redundant = task.leaves_freedom(robot.dof());
         let bounds = if is_redundant {
             let [lower, upper] = limits.inset_positions(INSET);
             Bounds::from_ranges(lower.into_iter().zip(upper))
@@ -134,7 +135,8 @@ impl<'a> Ladder<'a> {
             // Whole turns are chosen afterwards, so that one path serves all of them.
             Bounds::from_ranges((0..robot.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
         };
-        Self { robot, limits, around, is_redundant, follower: Follower::new(robot, bounds), each, evaluations: 0 }
+        let follower = Follower::new(robot, task, bounds);
+        Self { robot, limits, around, is_redundant, follower, task, each, evaluations: 0 }
     }
 
     /// The follower, for refinement.
@@ -196,8 +198,9 @@ impl<'a> Ladder<'a> {
                     Ok(candidates) => candidates,
                     Err(why) => return Ok(Err(Dead::Goal(why))),
                 };
+                let enough = if self.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
                 for candidate in candidates.iter().take(MOST_FOLLOWED) {
-                    if self.is_redundant && rungs.len() >= ENOUGH {
+                    if self.is_redundant && rungs.len() >= enough {
                         break;
                     }
                     match self.placed(candidate, paths, before) {
@@ -229,18 +232,13 @@ impl<'a> Ladder<'a> {
 
     /// Configurations at a pose, those nearest to `reference` first; why there are none.
     fn configurations(
-        &self,
+        &mut self,
         pose: &Pose,
         reference: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Point>, crate::message::Message>> {
-        let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
-        let options = AllOptions { each, redundancy: REDUNDANCY, ..AllOptions::default() };
-        let found = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
-        if found.solutions.is_empty() {
-            return Ok(Err(found.message()));
-        }
-        Ok(Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect()))
+        let Self { robot, task, each, follower, .. } = self;
+        MoveConfigurations { robot, task, each, follower }.at(pose, reference, monitor)
     }
 
     /// The rungs of one configuration at the start of a block, at the whole turns that suit each of the rungs before.

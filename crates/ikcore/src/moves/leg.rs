@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Vector3};
 
+use super::move_task::MoveTask;
 use super::program::{Move, MoveKind};
 use crate::error::{Error, Result};
 use crate::math::so3::rotation_between;
@@ -45,11 +46,11 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// The leg of a Cartesian move from `start`; `None` if it ends where it starts.
+    /// The leg of a Cartesian move from `start`; `None` if it ends where it starts, as far as `task` can tell.
     ///
     /// # Errors
     /// [`Error::InvalidMove`] for an arc that its points do not define.
-    pub fn of(index: usize, each: &Move, start: &Pose) -> Result<Option<Self>> {
+    pub fn of(index: usize, each: &Move, start: &Pose, task: &MoveTask) -> Result<Option<Self>> {
         let (curve, length, end) = match &each.kind {
             MoveKind::Line { pose, .. } => {
                 let (curve, length) = line(start, pose);
@@ -62,7 +63,11 @@ impl Leg {
             }
             MoveKind::Joints(_) | MoveKind::Wait(_) => return Ok(None),
         };
-        let turn = Vector3::from(rotation_between(&Frame::from(start), &Frame::from(end)));
+        let [from, to] = [start, end].map(Frame::from);
+        let turn = Vector3::from(rotation_between(&from, &to));
+        if length <= NOTHING && !task.is_whole() && task.turn_between(&from, &to) <= NOTHING {
+            return Ok(None);
+        }
         let length = if length > NOTHING { length } else { TURN_RADIUS * turn.norm() };
         if length <= NOTHING * TURN_RADIUS {
             return Ok(None);

@@ -5,26 +5,33 @@
 //! | `program` | [`Move`]s as data, and their checks |
 //! | `around` | obstacles, and what is kept on the way |
 //! | `leg`, `corner`, `tool_path` | lines and arcs by their length, rounded corners, the path from stop to stop |
+//! | `move_task` | what moves must meet of their poses |
 //! | `outline` | a program as steps from rest to rest |
 //! | `follower` | joint positions along a path, by Newton's method and splines |
-//! | `ladder` | configurations for the whole program |
+//! | `move_configurations` | configurations in which the tip meets a pose |
+//! | `ladder`, `climber` | configurations for the whole program, and words for where there are none |
 //! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
 //! | `timing` | the fastest motion at the speed asked for |
 //! | `report` | what slows a move, and when |
 //! | `assembly` | the motion of all steps |
-//! | `moves_options`, `plan_moves` | [`plan_moves()`], the call |
+//! | `program_planner` | the plan for one task |
+//! | `moves_options`, `plan_moves` | [`plan_moves()`], the call: tasks that ask for more compete |
 
 mod around;
 mod assembly;
+mod climber;
 mod corner;
 mod follower;
 mod joint_corner;
 mod ladder;
 mod leg;
+mod move_configurations;
+mod move_task;
 mod moves_options;
 mod outline;
 mod plan_moves;
 mod program;
+mod program_planner;
 mod report;
 mod run;
 mod timing;

@@ -4,10 +4,14 @@ use crate::constraint::Keep;
 use crate::limits::Limits;
 use crate::obstacle::Surroundings;
 use crate::solver::Stop;
+use crate::task::Task;
 
 /// Options of [`plan_moves`](super::plan_moves()).
 #[derive(Debug, Clone, Default)]
 pub struct MovesOptions {
+    /// What lines, arcs and joint moves to poses must meet of their poses, with a tool if needed. Positions stay on the lines and arcs,
+    /// whatever their tolerance. `None` means whole poses.
+    pub task: Option<Task>,
     /// What the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// What holds at every instant of the motion.

@@ -1,7 +1,10 @@
 //! What a program asks of the tip, before configurations are chosen.
 
+use nalgebra::Rotation3;
+
 use super::corner::Corner;
 use super::leg::Leg;
+use super::move_task::MoveTask;
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::{ROUNDING, ToolPath};
 use crate::error::{Error, Result};
@@ -31,7 +34,7 @@ pub(super) struct Stage {
 ///
 /// # Errors
 /// [`Error::InvalidMove`].
-pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Vec<Stage>> {
+pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64], task: &MoveTask) -> Result<Vec<Stage>> {
     let mut stages: Vec<Stage> = vec![];
     let mut legs: Vec<Leg> = vec![];
     let mut pose: Pose = robot.tip(start).into();
@@ -47,13 +50,16 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64]) -> Result<Ve
                     JointGoal::Pose(goal) => *goal,
                 };
             }
-            MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, &pose)? {
+            MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, &pose, task)? {
                 None => {
                     let before = i.checked_sub(1).filter(|before| moves[*before].blend > 0.0);
                     if let Some(with_blend) = before.or((blend > 0.0).then_some(i)) {
                         return Err(no_room(moves, with_blend, i));
                     }
                     push(StageKind::Rest(i, 0.0), 0.0);
+                    if !task.is_whole() {
+                        pose.rotation = orientation_of(each, &pose);
+                    }
                 }
                 Some(leg) => {
                     pose = end_of(&leg, each);
@@ -97,6 +103,14 @@ fn end_of(leg: &Leg, each: &Move) -> Pose {
         MoveKind::Arc { pose, angle: Some(_), .. } => Pose::from_parts(leg.pose(leg.length).translation, pose.rotation),
         MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => *pose,
         MoveKind::Joints(_) | MoveKind::Wait(_) => leg.pose(leg.length),
+    }
+}
+
+/// The orientation that a move of the tip gives.
+fn orientation_of(each: &Move, before: &Pose) -> Rotation3<f64> {
+    match &each.kind {
+        MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } => pose.rotation,
+        MoveKind::Joints(_) | MoveKind::Wait(_) => before.rotation,
     }
 }
 

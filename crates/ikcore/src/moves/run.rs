@@ -1,6 +1,7 @@
 //! What the arm does from one stop to the next: joint moves and paths of the tip, joined by rounded corners.
 
 use super::joint_corner::JointCorner;
+use super::move_task::{MoveTask, TURN_ACCURACY};
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::math::cubic_spline::SplineEnds;
@@ -73,6 +74,7 @@ impl<'a> Run<'a> {
     /// None in practice: the parts differ.
     pub fn rounded(
         robot: &Robot,
+        task: &MoveTask,
         limits: &ConstantLimits,
         parts: &[RunPart<'a>],
         radii: &[f64],
@@ -92,7 +94,7 @@ impl<'a> Run<'a> {
         while intervals <= MOST_INTERVALS {
             let mut run = Self::through(parts, &corners, intervals)?;
             run.path = run.path.inside(&limits.lower, &limits.upper);
-            if run.is_accurate(robot) {
+            if run.is_accurate(robot, task) {
                 return Ok(Some(run));
             }
             intervals *= 2;
@@ -149,7 +151,7 @@ impl<'a> Run<'a> {
     }
 
     /// Whether the tip stays on its paths between knots.
-    fn is_accurate(&self, robot: &Robot) -> bool {
+    fn is_accurate(&self, robot: &Robot, task: &MoveTask) -> bool {
         let mut q = Point::from_elem(0.0, robot.dof());
         self.parts.iter().zip(&self.windows).all(|(part, window)| {
             let Some(tool_path) = part.tool_path else { return true };
@@ -162,7 +164,13 @@ impl<'a> Run<'a> {
                 let at = window.from + s - window.begin;
                 let has_speed = tool_path.pieces[tool_path.piece_at(at)].speed.is_some();
                 let by_slope = if has_speed { SLOPE_ACCURACY * (ends[1] - ends[0]) } else { ACCURACY };
-                distance(&robot.tip_position(&q), &tool_path.pose(at).origin) <= by_slope.clamp(NOTHING, ACCURACY)
+                let most = by_slope.clamp(NOTHING, ACCURACY);
+                let due = tool_path.pose(at);
+                if task.is_whole() {
+                    return distance(&robot.tip_position(&q), &due.origin) <= most;
+                }
+                let [distance, angle] = task.target(&due).off(&robot.tip(&q));
+                distance <= most && angle <= TURN_ACCURACY
             })
         })
     }

@@ -16,6 +16,7 @@ use crate::obstacle::GivenObstacles;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
+use crate::task::read_task;
 use crate::units::doubt;
 use crate::wording::said;
 
@@ -32,6 +33,9 @@ use crate::wording::said;
 ///     robot: the arm.
 ///     moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
 ///     start_q: joint positions (n,) at the start.
+///     task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
+///         an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
+///         arcs whatever their tolerance. None: whole poses.
 ///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
@@ -48,7 +52,7 @@ use crate::wording::said;
 ///     InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
 ///         arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
 ///         collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
-///         bodies.
+///         bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to.
 ///     LimitError: limits that contradict each other; a start or joint positions outside them.
 ///     UnsupportedLimit: limits that vary in time, or no acceleration limits.
 ///
@@ -63,14 +67,15 @@ use crate::wording::said;
 ///     >>> [move.name for move in plan.moves], round(plan.moves[0].speed, 4)
 ///     (['down', None], 0.05)
 #[pyfunction]
-#[pyo3(signature = (robot, moves, *, start_q, limits=None, obstacles=None, margin=None, self_collision=None, keep=None, stop=None,
-                    seed=0, progress=None))]
+#[pyo3(signature = (robot, moves, *, start_q, task=None, limits=None, obstacles=None, margin=None, self_collision=None, keep=None,
+                    stop=None, seed=0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn plan_moves(
     py: Python<'_>,
     robot: &Bound<'_, PyRobot>,
     moves: &Bound<'_, PyAny>,
     start_q: &Bound<'_, PyAny>,
+    task: Option<&Bound<'_, PyAny>>,
     limits: Option<&PyLimits>,
     obstacles: Option<&Bound<'_, PyAny>>,
     margin: Option<f64>,
@@ -87,6 +92,7 @@ pub fn plan_moves(
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
     let options = MovesOptions {
+        task: read_task(task)?,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         keeps: read_keeps(robot.get(), keep)?,
         limits: resolved,

@@ -2,14 +2,16 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from ... import InvalidInputError, Scene, plan_moves, pose
+from ... import InvalidInputError, Scene, plan_moves, pose, tasks
 from ...moves import Arc, Joints, Line, Move, Wait
+from ...tasks import Task
 from ..options import (
     Acceleration,
     AsJson,
@@ -41,13 +43,32 @@ _KEYS: dict[str, tuple[set[str], set[str]]] = {
     "wait": ({"seconds"}, {"name"}),
 }
 _MOVES: dict[str, Callable[..., Move]] = {"joints": Joints, "line": Line, "arc": Arc, "wait": Wait}
+_TASK_KEYS = {
+    "pose": {"weights", "tolerance", "tool"},
+    "position": {"weights", "tolerance", "tool"},
+    "pointing": {"axis", "weights", "tolerance", "tool"},
+}
+_TASKS: dict[str, Callable[..., Task]] = {
+    "pose": tasks.Pose,
+    "position": tasks.Position,
+    "pointing": tasks.Pointing,
+}
+
+
+@dataclass(frozen=True)
+class Program:
+    """Moves, and what they must meet of their poses."""
+
+    moves: list[Move]
+    task: Task | None = None
 
 
 def moves(
     program: Annotated[
         Path,
         typer.Argument(
-            help='A JSON file: a list of moves, such as {"move": "line", "to": [0.4, 0, 0.2, 0, 0, 0], "speed": 0.05}.'
+            help='A JSON file: a list of moves, such as {"move": "line", "to": [0.4, 0, 0.2, 0, 0, 0], "speed": 0.05}, '
+            'or {"moves": [...], "task": {"kind": "pointing", "axis": [0, 0, 1]}}.'
         ),
     ],
     robot: RobotName = None,
@@ -75,7 +96,8 @@ def moves(
     """Plan a program of joint moves, lines, arcs and waits.
 
     Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or {"q": [...]}, joint
-    positions; "via" of an arc is a point.
+    positions; "via" of an arc is a point. A task says what of the poses counts: its kind is pose, position or pointing,
+    with "weights", "tolerance", "tool" (six numbers) and "axis" as for `beetle_ik.tasks`.
     """
     arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     read = read_program(program)
@@ -84,8 +106,9 @@ def moves(
     report(
         lambda: plan_moves(
             arm,
-            read,
+            read.moves,
             start_q=numbers("--start-q", start_q),
+            task=read.task,
             obstacles=obstacles,
             margin=margin,
             seed=seed,
@@ -100,15 +123,45 @@ def moves(
     )
 
 
-def read_program(file: Path) -> list[Move]:
-    """Returns the moves of a JSON file; errors name the move, counted from 0, and the key."""
+def read_program(file: Path) -> Program:
+    """Returns the program of a JSON file; errors name the move, counted from 0, and the key."""
     try:
         given = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, RecursionError, ValueError) as error:  # not UTF-8, no JSON, nested too deep, numbers too long
         raise InvalidInputError(f"{file}: not a readable JSON file: {error}") from error
+    task = None
+    if isinstance(given, dict):
+        if "moves" not in given:
+            raise InvalidInputError(f"{file}: a program needs 'moves', a list; it may have a 'task'")
+        _allow(f"{file}", "program", given, {"moves", "task"})
+        task = _task(f"{file}: task", given["task"]) if "task" in given else None
+        given = given["moves"]
     if not isinstance(given, list):
         raise InvalidInputError(f"{file}: expected a list of moves, got {type(given).__name__}")
-    return [_move(f"{file}: move {i}", each) for i, each in enumerate(given)]
+    return Program([_move(f"{file}: move {i}", each) for i, each in enumerate(given)], task)
+
+
+def _task(where: str, given: Any) -> Task:
+    kinds = ", ".join(_TASKS)
+    if not isinstance(given, dict):
+        raise InvalidInputError(f"{where}: expected an object with the key 'kind', got {given!r}")
+    rest = dict(given)
+    kind = rest.pop("kind", None)
+    if kind not in _TASKS:
+        raise InvalidInputError(f"{where}: 'kind' must be one of {kinds}, got {kind!r}")
+    _allow(where, f"{kind} task", rest, _TASK_KEYS[kind])
+    read: dict[str, np.ndarray] = {key: _numbers(where, key, value, None) for key, value in rest.items()}
+    if "tool" in read:
+        read["tool"] = _pose(where, "tool", rest["tool"])
+    try:
+        return _TASKS[kind](**read)
+    except InvalidInputError as error:
+        raise type(error)(f"{where}: {error}") from error
+
+
+def _allow(where: str, what: str, given: dict[str, Any], allowed: set[str]) -> None:
+    for key in sorted(given.keys() - allowed):
+        raise InvalidInputError(f"{where}: unknown key '{key}'; a {what} takes {', '.join(sorted(allowed))}")
 
 
 def _move(where: str, given: Any) -> Move:
@@ -122,8 +175,7 @@ def _move(where: str, given: Any) -> Move:
     needed, allowed = _KEYS[kind]
     for key in sorted(needed - rest.keys()):
         raise InvalidInputError(f"{where}: a {kind} needs '{key}'")
-    for key in sorted(rest.keys() - needed - allowed):
-        raise InvalidInputError(f"{where}: unknown key '{key}'; a {kind} takes {', '.join(sorted(needed | allowed))}")
+    _allow(where, kind, rest, needed | allowed)
     for key, value in rest.items():
         if key == "name" and not isinstance(value, str):
             raise InvalidInputError(f"{where}: 'name' must be a text, got {value!r}")
@@ -133,7 +185,7 @@ def _move(where: str, given: Any) -> Move:
         rest["via"] = _numbers(where, "via", rest["via"], 3)
     if "to" in rest:
         to = rest.pop("to")
-        rest |= {"q_or_pose": _goal(where, to)} if kind == "joints" else {"pose": _pose(where, to)}
+        rest |= {"q_or_pose": _goal(where, to)} if kind == "joints" else {"pose": _pose(where, "to", to)}
     try:
         return _MOVES[kind](**rest)
     except InvalidInputError as error:
@@ -154,14 +206,14 @@ def _numbers(where: str, key: str, value: Any, count: int | None) -> np.ndarray:
     return np.array(value, dtype=float)
 
 
-def _pose(where: str, value: Any) -> np.ndarray:
-    place = _numbers(where, "to", value, _POSE)
+def _pose(where: str, key: str, value: Any) -> np.ndarray:
+    place = _numbers(where, key, value, _POSE)
     return pose(place[:3], rpy=place[3:])
 
 
 def _goal(where: str, value: Any) -> np.ndarray:
     if not isinstance(value, dict):
-        return _pose(where, value)
+        return _pose(where, "to", value)
     if list(value) != ["q"]:
         raise InvalidInputError(f"{where}: 'to' must be six numbers or an object with the key 'q', got {value!r}")
     return _numbers(where, "q", value["q"], None)

@@ -21,7 +21,7 @@ mod segment_geometry;
 mod tip_curve;
 mod tolerance_band;
 
-pub(crate) use path_target::PathTarget;
+pub(crate) use path_target::{PathTarget, angle_between};
 pub(crate) use repetition::refuse_repetition;
 pub use tip_curve::TipPath;
-pub(crate) use tolerance_band::{Borders, Displacement};
+pub(crate) use tolerance_band::{Borders, Displacement, ToleranceBand};

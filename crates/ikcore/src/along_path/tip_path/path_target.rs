@@ -3,6 +3,8 @@
 use super::tolerance_band::{Borders, Displacement, ToleranceBand};
 use crate::math::Frame;
 use crate::math::box_step::ROWS;
+use crate::math::so3::{norm, rotation_between};
+use crate::math::vector::distance;
 use crate::objective::Linearization;
 use crate::robot::Robot;
 use crate::task::{Target, Tolerance};
@@ -49,8 +51,28 @@ impl PathTarget {
         }
     }
 
+    /// The distance (m) and the angle (rad) of a tip from the target, or from the nearest pose within the tolerance band.
+    pub fn off(&self, tip: &Frame) -> [f64; 2] {
+        self.excess(|| *tip).unwrap_or_else(|| {
+            let position = self.target.position();
+            let apart = position.map_or(0.0, |position| distance(&tip.origin, &position));
+            [apart, angle_between(&self.target, || *tip)]
+        })
+    }
+
     /// The distance (m) and the angle (rad) of a tip from the nearest pose within the tolerance band; `None` without one.
     pub fn excess(&self, tip: impl FnOnce() -> Frame) -> Option<[f64; 2]> {
         self.tolerance_band.map(|tolerance_band| tolerance_band.excess(&self.target, &tip()))
+    }
+}
+
+/// Angle (rad) of the tip from a target's orientation, or from the direction of its axis; 0 for a position.
+pub(crate) fn angle_between(target: &Target, tip: impl FnOnce() -> Frame) -> f64 {
+    match target {
+        Target::Pose(due) => norm(&rotation_between(due, &tip())),
+        Target::Pointing { .. } => {
+            target.assess_tip(&tip(), &Tolerance::default().into()).error.rotation.map_or(0.0, f64::sqrt)
+        }
+        Target::Position(_) | Target::Orientation(_) => 0.0,
     }
 }

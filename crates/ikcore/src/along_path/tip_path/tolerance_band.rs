@@ -52,6 +52,22 @@ impl ToleranceBand {
         Ok(Self { allowed: std::array::from_fn(allowed) })
     }
 
+    /// Returns the band that `components` leave to the orientation of a motion that strays by `accuracy` (rad), with none for the position.
+    pub fn of_orientation(components: &Components, accuracy: f64) -> Self {
+        let allowed = |k: usize| match components.tolerance {
+            _ if k < 3 => 0.0,
+            _ if components.weights[k] == 0.0 => f64::INFINITY,
+            Some(tolerance) => (tolerance[k] - accuracy).max(0.0),
+            None => 0.0,
+        };
+        Self { allowed: std::array::from_fn(allowed) }
+    }
+
+    /// The largest displacement of each component.
+    pub fn allowed(&self) -> &[f64; ROWS] {
+        &self.allowed
+    }
+
     /// The same band with no component off by more than `most`; free components stay free.
     pub fn at_most(&self, most: f64) -> Self {
         Self { allowed: self.allowed.map(|allowed| if allowed.is_finite() { allowed.min(most) } else { allowed }) }

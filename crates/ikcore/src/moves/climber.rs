@@ -1,0 +1,154 @@
+//! The search for the configurations of a program, and words for what it does not find.
+
+use super::follower::{Lost, Stray};
+use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung};
+use super::program::{JointGoal, Move};
+use super::tool_path::ToolPath;
+use crate::error::{Error, Result};
+use crate::ik::{AllOptions, SolveOptions, solve_all};
+use crate::message::{Message, message};
+use crate::robot::Robot;
+use crate::solver::Monitor;
+use crate::task::Target;
+use crate::timing::{ConstantLimits, JointPath};
+use crate::wording::number;
+
+/// Length past the place where a path is lost (m), at which its pose is solved for to learn why; also how exactly the end of the reach is
+/// found.
+const BEYOND: f64 = 1e-3;
+
+/// What the search for configurations is about.
+pub(super) struct Climber<'a> {
+    pub robot: &'a Robot,
+    pub limits: &'a ConstantLimits,
+    pub moves: &'a [Move],
+    pub blocks: &'a [LadderBlock<'a>],
+    pub each: SolveOptions,
+    /// Whether errors say how far the reach goes.
+    pub explains: bool,
+}
+
+impl Climber<'_> {
+    /// The joint paths of all paths of the tip.
+    pub fn refined(
+        &self,
+        ladder: &mut Ladder<'_>,
+        rungs: &[Rung],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Vec<JointPath>> {
+        let mut paths = vec![];
+        for (i, (block, rung)) in self.blocks.iter().zip(rungs).enumerate() {
+            for (k, (path, track)) in block.paths.iter().zip(&rung.tracks).enumerate() {
+                let (at, cause) = match ladder.follower().refined(path, track.clone(), self.limits)? {
+                    Ok(joints) => {
+                        paths.push(joints);
+                        continue;
+                    }
+                    Err(Stray::Lost(Lost { at })) => (at, Cause::OutOfReach),
+                    Err(Stray::Beyond { at, joint, value }) => (at, Cause::Limit { joint, value }),
+                    Err(Stray::Still { at }) => return Err(self.stands_still(path, at)),
+                };
+                return Err(self.no_way(i, Dead::Path { path: k, at, cause }, monitor)?);
+            }
+        }
+        Ok(paths)
+    }
+
+    /// The error for a block without a configuration.
+    pub fn no_way(&self, block: usize, dead: Dead, monitor: &mut dyn Monitor) -> Result<Error> {
+        let (path, at, cause) = match dead {
+            Dead::Goal(problem) => {
+                let index = self.blocks[block].goal.map_or(0, |(index, _)| index);
+                return Ok(Error::Unreachable { what: self.moves[index].named(index), problem });
+            }
+            Dead::Path { path, at, cause } => (self.blocks[block].paths[path], at, cause),
+        };
+        let (index, along) = path.place_on_move(at);
+        let named = self.moves[index].named(index);
+        let no_solution = match &cause {
+            Cause::Blocked(_) => None,
+            _ if !self.explains => None,
+            _ => self.end_of_reach(path, at, monitor)?,
+        };
+        let no_solution = no_solution.map(|(at, why)| message![format!("{} m along it, ", number(at)), why]);
+        let along = number(along);
+        let problem: Message = match (cause, no_solution) {
+            (Cause::OutOfReach, Some(problem)) => return Ok(Error::Unreachable { what: named, problem }),
+            (Cause::OutOfReach, None) => format!(
+                "{along} m along it, the arm cannot go on from any configuration that it comes with, which a singularity explains; {}",
+                self.advice(block)
+            )
+            .into(),
+            (Cause::Limit { joint, value }, no_solution) => {
+                let advice = match no_solution {
+                    Some(place) => message!["no other configuration helps: ", place],
+                    None => self.advice(block).into(),
+                };
+                message![format!("{along} m along it, {}; ", self.beyond_limits(joint, value)), advice]
+            }
+            (Cause::Blocked(fault), _) => format!("{along} m along it, {fault}").into(),
+        };
+        Ok(Error::NotFound { what: format!("a motion along {named}"), problem })
+    }
+
+    /// The error for a path on which the arm need not move.
+    fn stands_still(&self, path: &ToolPath, at: f64) -> Error {
+        let (index, along) = path.place_on_move(at);
+        let problem = format!(
+            "the task leaves the tip so free that the arm need not move {} m along it: leave it out, or ask for more of the pose",
+            number(along)
+        );
+        Error::NotFound { what: format!("a motion along {}", self.moves[index].named(index)), problem: problem.into() }
+    }
+
+    fn beyond_limits(&self, joint: usize, value: f64) -> String {
+        let (name, value) = (self.limits.joint_name(joint), number(value));
+        let [lower, upper] = [&self.limits.lower, &self.limits.upper].map(|limits| number(limits[joint]));
+        format!("joint '{name}' would have to go to {value}, beyond its limits [{lower}, {upper}]")
+    }
+
+    /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
+    /// and it is not proven that its end has none.
+    fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
+        let (index, along) = path.place_on_move(at);
+        let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
+        let mut solutions = |s: f64| {
+            let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
+            solve_all(self.robot, &Target::Pose(path.pose(s)), &options, monitor)
+        };
+        let lost = solutions((at + BEYOND).min(path.length()))?;
+        if self.each.task.is_some() {
+            // No closed form proves anything of a part of a pose.
+            let problem = || "no configuration was found there that meets the task".into();
+            return Ok(lost.solutions.is_empty().then(|| (along, problem())));
+        }
+        if lost.obstruction.is_some() {
+            return Ok(Some((along, lost.message())));
+        }
+        let mut beyond = solutions(end)?;
+        if beyond.obstruction.is_none() {
+            return Ok(lost.solutions.is_empty().then(|| (along, lost.message())));
+        }
+        let (mut near, mut far) = (at, end);
+        while far - near > BEYOND {
+            let middle = 0.5 * (near + far);
+            let found = solutions(middle)?;
+            if found.obstruction.is_some() {
+                (far, beyond) = (middle, found);
+            } else {
+                near = middle;
+            }
+        }
+        Ok(Some((path.place_on_move(far).1, beyond.message())))
+    }
+
+    fn advice(&self, block: usize) -> &'static str {
+        match self.blocks[block].goal {
+            Some((_, JointGoal::Pose(_))) => "divide it by a joint move, or move it",
+            Some(_) => {
+                "give the joint move before it a pose in place of a configuration, so that the planner can choose one"
+            }
+            None => "begin with a joint move to a pose, so that the planner can choose the configuration",
+        }
+    }
+}

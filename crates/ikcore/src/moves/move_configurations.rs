@@ -1,0 +1,106 @@
+//! Configurations in which the tip meets a pose of a program.
+
+use super::follower::Follower;
+use super::move_task::MoveTask;
+use crate::error::Result;
+use crate::ik::{AllOptions, SolveOptions, solve, solve_all};
+use crate::math::vector::{largest_difference, squared_distance};
+use crate::math::{Frame, Pose};
+use crate::message::Message;
+use crate::objective::Point;
+use crate::robot::Robot;
+use crate::solver::{Monitor, Status};
+use crate::task::Target;
+
+/// Values of the redundancy at which a pose is solved; of each pose, where the task leaves several.
+const REDUNDANCY: usize = 16;
+const REDUNDANCY_OF_EACH: usize = 4;
+
+/// Configurations of a search, where there is no closed form.
+const SEARCHED: usize = 16;
+
+/// Joint difference below which two configurations are one.
+const SAME: f64 = 1e-6;
+
+/// The source of configurations.
+pub(super) struct MoveConfigurations<'s, 'a> {
+    pub robot: &'a Robot,
+    pub task: &'s MoveTask,
+    pub each: &'s SolveOptions,
+    pub follower: &'s mut Follower<'a>,
+}
+
+impl MoveConfigurations<'_, '_> {
+    /// Configurations that meet the task at a pose, those nearest to `reference` first; why there are none.
+    ///
+    /// # Errors
+    /// Those of `solve_all`.
+    pub fn at(
+        &mut self,
+        pose: &Pose,
+        reference: &[f64],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Point>, Message>> {
+        if self.task.is_whole() {
+            return self.of_whole_pose(pose, reference, monitor);
+        }
+        let mut found = vec![];
+        let nearest = SolveOptions { start: Some(reference.to_vec()), ..self.searched() };
+        let nearest = solve(self.robot, &Target::from(pose), &nearest, monitor)?;
+        if nearest.status == Status::Solved {
+            found.push(nearest.q);
+        }
+        if self.robot.solves_at_once() == Some(true) {
+            found.extend(self.by_closed_form(pose, reference, monitor)?);
+        }
+        if found.len() < 2 {
+            let options = AllOptions { each: self.searched(), limit: Some(SEARCHED), ..AllOptions::default() };
+            let all = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
+            if found.is_empty() && all.solutions.is_empty() {
+                return Ok(Err(all.message()));
+            }
+            found.extend(all.solutions.iter().map(|solution| Point::from_slice(solution.q)));
+        }
+        // A search ends within its tolerance, and a path begins on its pose.
+        let place = Frame::from(pose);
+        found.retain_mut(|q| self.follower.meet(&place, q));
+        found.sort_by(|one, other| squared_distance(one, reference).total_cmp(&squared_distance(other, reference)));
+        found.dedup_by(|one, other| largest_difference(one, other) < SAME);
+        let none = "the search ended near the pose, but no configuration inside the limits meets it";
+        Ok(if found.is_empty() { Err(none.into()) } else { Ok(found) })
+    }
+
+    fn of_whole_pose(
+        &self,
+        pose: &Pose,
+        reference: &[f64],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Point>, Message>> {
+        let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
+        let options = AllOptions { each, redundancy: REDUNDANCY, ..AllOptions::default() };
+        let found = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
+        if found.solutions.is_empty() {
+            return Ok(Err(found.message()));
+        }
+        Ok(Ok(found.solutions.iter().map(|solution| Point::from_slice(solution.q)).collect()))
+    }
+
+    /// Configurations at poses that are spread over what the task leaves free.
+    fn by_closed_form(&self, pose: &Pose, reference: &[f64], monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
+        let poses = self.task.spread(pose);
+        let redundancy = if poses.len() > 1 { REDUNDANCY_OF_EACH } else { REDUNDANCY };
+        let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
+        let options = AllOptions { each, redundancy, ..AllOptions::default() };
+        let mut found = vec![];
+        for pose in poses {
+            let all = solve_all(self.robot, &Target::from(&pose), &options, monitor)?;
+            found.extend(all.solutions.iter().map(|solution| Point::from_slice(solution.q)));
+        }
+        Ok(found)
+    }
+
+    /// Options of a search for the task.
+    fn searched(&self) -> SolveOptions {
+        SolveOptions { task: self.task.searched(), ..self.each.clone() }
+    }
+}
