@@ -2,7 +2,7 @@
 
 use crate::along_path::tip_path::{TipPath, angle_between};
 use crate::math::MAX_DOF;
-use crate::math::so3::norm;
+use crate::math::vector::distance;
 use crate::robot::Robot;
 use crate::timing::{JointPath, Violation};
 
@@ -122,14 +122,7 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let mut q = [0.0; MAX_DOF];
         let q = &mut q[..self.robot.dof()];
         (self.configurations)(fraction, q);
-        let due = self.tip_path.path_target(fraction);
-        if let Some(parts) = due.excess(|| self.robot.tip(q)) {
-            let [distance, angle] = self.beyond(parts);
-            return distance.max(angle);
-        }
-        let (tip, wanted) = (self.robot.tip_position(q), due.target.position().unwrap_or_default());
-        let distance = norm(&std::array::from_fn(|k| tip[k] - wanted[k]));
-        let [distance, angle] = self.beyond([distance, angle_between(&due.target, || self.robot.tip(q))]);
+        let [distance, angle] = self.beyond(self.bounds_of(fraction, q));
         distance.max(angle)
     }
 
@@ -146,8 +139,11 @@ impl<C: Configurations> TipDeviation<'_, C> {
         let mut visit = |i: usize| {
             let fraction = from + (to - from) * i as f64 / (samples + 1) as f64;
             (self.configurations)(fraction, q);
-            let [distance, angle] = self.beyond(self.parts_of(fraction, q, [from, to]));
-            is_too_much(q, distance.max(angle))
+            let exceeds = |parts: [f64; 2]| {
+                let [distance, angle] = self.beyond(parts);
+                is_too_much(q, distance.max(angle))
+            };
+            exceeds(self.bounds_of(fraction, q)) && exceeds(self.parts_of(fraction, q, [from, to]))
         };
         let half = samples.div_ceil(2);
         (half..=samples).chain(1..half).any(&mut visit)
@@ -163,6 +159,15 @@ impl<C: Configurations> TipDeviation<'_, C> {
     /// Deviation that counts: the distance, and the angle beyond the turn that the path leaves open.
     fn beyond(&self, [distance, angle]: [f64; 2]) -> [f64; 2] {
         [distance, (angle - self.tip_path.open_turn()).max(0.0)]
+    }
+
+    /// Upper bounds of [`parts_of`](Self::parts_of): the distance (m) from the path point at the same parameter, and the angle (rad).
+    fn bounds_of(&self, fraction: f64, q: &[f64]) -> [f64; 2] {
+        let (due, tip) = (self.tip_path.path_target(fraction), self.robot.tip(q));
+        due.excess(|| tip).unwrap_or_else(|| {
+            let wanted = due.target.position().unwrap_or_default();
+            [distance(&tip.origin, &wanted), angle_between(&due.target, || tip)]
+        })
     }
 
     /// The distance (m) at a configuration from the part of the path around `fraction` that extends one interval before `from` and after

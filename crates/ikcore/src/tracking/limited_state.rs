@@ -9,8 +9,8 @@ use crate::wording::number;
 /// Rounding of the end of a stop (rad, m; relative beyond 1).
 const INSIDE: f64 = 16.0 * f64::EPSILON;
 
-/// Rounding of positions, relative to the jerk limit in a tick, that a stop would feel.
-const COARSE: f64 = 1e-3;
+/// Rounding of positions, relative to the jerk limit in a tick, that a stop of a million ticks would feel.
+const COARSE: f64 = 1e-6;
 
 /// Motion of an arm under acceleration or jerk limits.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::path_target::PathTarget;
 use super::repetition::refuse_repetition;
-use super::segment_geometry::distance_to_segment;
+use super::segment_geometry::squared_distance_to_segment;
 use super::tolerance_band::{ToleranceBand, smallest_tolerance};
 use crate::error::{Error, Result};
 use crate::math::vector::between;
@@ -317,7 +317,10 @@ impl TipPath {
     pub fn distance(&self, position: [f64; 3], from: f64, to: f64) -> f64 {
         let (first, last) = (self.locate(from.max(0.0)).0, self.locate(to.min(1.0)).0);
         let segments = self.positions[first..=last + 1].windows(2);
-        segments.map(|ends| distance_to_segment(position, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+        segments
+            .map(|ends| squared_distance_to_segment(position, ends[0], ends[1]))
+            .fold(f64::INFINITY, f64::min)
+            .sqrt()
     }
 
     /// The point at this path parameter, in words for messages.
@@ -333,9 +336,25 @@ impl TipPath {
 
     /// Returns the row at which the segment with this path parameter starts, and the fraction of the segment before it.
     fn locate(&self, fraction: f64) -> (usize, f64) {
-        let row = self.fractions.partition_point(|start| *start <= fraction).clamp(1, self.fractions.len() - 1) - 1;
+        let row = self.rows_up_to(fraction).clamp(1, self.fractions.len() - 1) - 1;
         let [from, to] = [self.fractions[row], self.fractions[row + 1]];
         (row, ((fraction - from) / (to - from)).clamp(0.0, 1.0))
+    }
+
+    /// Number of rows up to this path parameter, searched in both directions from where it is if rows are evenly spaced.
+    fn rows_up_to(&self, fraction: f64) -> usize {
+        let (fractions, count) = (&self.fractions, self.fractions.len());
+        let guess = ((fraction * (count - 1) as f64) as usize).min(count - 1);
+        let [mut low, mut high, mut reach] = [guess, guess + 1, 1];
+        while low > 0 && fractions[low] > fraction {
+            low = low.saturating_sub(reach);
+            reach *= 2;
+        }
+        while high < count && fractions[high] <= fraction {
+            high = (high + reach).min(count);
+            reach *= 2;
+        }
+        low + fractions[low..high].partition_point(|row| *row <= fraction)
     }
 }
 
