@@ -208,7 +208,8 @@ class Programs(Attack):
                     raise BrokenError("a move turns the tip beyond its task", (i, angle))
             turned = arms.turn(turned[:, 0], np.array([move["turn"]]))[0] @ turned
             asked = move["speed"]
-            if asked is not None and np.linalg.norm(move["way"]) > 1e-9:
+            in_blends = before + blend if move["kind"] == "line" else 0.0
+            if asked is not None and np.linalg.norm(move["way"]) > in_blends + 1e-9:
                 said = np.zeros(SAMPLES, bool)
                 for bound in report.bound_by:
                     said |= (t >= bound.start) & (t <= bound.end)

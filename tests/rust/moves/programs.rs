@@ -166,3 +166,19 @@ fn speeds_asked_for_are_kept_under_jerk_limits_too() {
         }
     }
 }
+
+#[test]
+fn a_last_move_that_its_blend_takes_whole_has_its_own_report() {
+    let arm = robot("ur5e");
+    let corner = moved(&arm.fk(&HOME).unwrap(), [0.0, 0.1, 0.0]);
+    let named = |each: Move, name: &str| Move { name: Some(name.into()), ..each };
+    let moves = [
+        named(line(corner, Some(0.1), 0.05), "along"),
+        named(line(moved(&corner, [0.0, 0.0, 0.05]), Some(0.01), 0.0), "up"),
+    ];
+    let plan = planned(&arm, &moves, None).unwrap();
+    let names: Vec<_> = plan.moves.iter().filter_map(|report| report.name.as_deref()).collect();
+    assert_eq!(names, ["along", "up"]);
+    assert_eq!(plan.moves[1].message(), "wholly in blends");
+    assert!(plan.moves[1].bound_by.is_empty());
+}

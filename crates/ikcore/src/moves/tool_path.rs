@@ -132,7 +132,9 @@ impl ToolPath {
     /// Length at which each move ends: the middle of its corner, or the end of the path. In order of the moves.
     pub fn ends_of_moves(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let corners = self.pieces.iter().zip(&self.breaks).filter(|(piece, _)| piece.is_corner());
-        let last = self.pieces[self.pieces.len() - 1].index;
+        let last = &self.pieces[self.pieces.len() - 1];
+        // A corner that takes all of the last move ends the path.
+        let last = last.index + usize::from(last.is_corner());
         corners.map(|(piece, begin)| (piece.index, begin + 0.5 * piece.length)).chain([(last, self.length())])
     }
 }
