@@ -253,6 +253,12 @@ def test_loops_and_bends_of_the_chain_are_refused_by_name(name: str) -> None:
     assert str(told.value) == f"MuJoCo model: {equality} couples the joints {joints}, {SIDE}"
 
 
+def test_equalities_that_lock_a_joint_outside_its_range_are_refused() -> None:
+    beside = "<joint joint1='f' joint2='c' polycoef='.25 .004 0 0 0'/><joint joint1='f' polycoef='.125 0 0 0 0'/>"
+    with pytest.raises(bik.InvalidInputError, match=r"equalities lock joint 'c' at -31.25, outside its range from"):
+        bik.Robot.from_mjcf(arm(beside), tip="tool")
+
+
 def test_a_loop_is_refused_only_if_the_chain_takes_part() -> None:
     loop = arm("<connect body1='left' body2='right' anchor='0 0 .1'/>")
     assert bik.Robot.from_mjcf(loop, tip="tool").held_joints == {"f": 0.0, "g": 0.1}

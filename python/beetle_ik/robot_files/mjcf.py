@@ -100,7 +100,10 @@ class _Reader:
         return rests
 
     def require_kept(self, robot: Robot) -> None:
-        """Raises `InvalidInputError` for an equality that joints of the chain do not keep; warns for the others."""
+        """Raises `InvalidInputError` for an equality that joints of the chain do not keep; warns for the others.
+
+        One that they can only keep outside their ranges is refused too.
+        """
         chain = {joint for joint in range(len(self.joints)) if self.equalities.leader(joint) in robot.joint_names}
         for tip in robot.tips:
             chain |= self.equalities.between((self._carrier(robot.link_names[0]), self._carrier(tip)))
@@ -118,6 +121,8 @@ class _Reader:
                 "chain are held: bodies there may stand elsewhere in MuJoCo; hold=... closes it",
                 stacklevel=3,
             )
+        for joint in sorted(chain):
+            self.equalities.require_lock_in_range(joint)
 
     def _carrier(self, name: str) -> int:
         """Returns the body of this name, or the body that carries the site of this name."""

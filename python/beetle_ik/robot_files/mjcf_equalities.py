@@ -63,6 +63,16 @@ class Equalities:
         drive = self.drives.get(joint)
         return drive.offset if drive and drive.master is None else None
 
+    def require_lock_in_range(self, joint: int) -> None:
+        """Raises `InvalidInputError` for a joint that is locked outside its range."""
+        locked, (lower, upper) = self.lock(joint), map(float, self.model.jnt_range[joint])
+        if locked is None or not self.model.jnt_limited[joint] or lower - _CLOSED <= locked <= upper + _CLOSED:
+            return
+        raise InvalidInputError(
+            f"MuJoCo model: equalities lock joint '{self.joints[joint]}' at {locked:.4g}, outside its range from "
+            f"{lower:.4g} to {upper:.4g}: leave out one of them (active='false'), or widen the range"
+        )
+
     def leader(self, joint: int) -> str | None:
         """Returns the name of the independent joint that moves a joint; None for a locked one."""
         first = self._first(joint)

@@ -266,7 +266,7 @@ fn a_blocked_way_is_taken_when_it_becomes_clear() {
         assert!(session.qd().iter().all(|v| v.abs() < 1e-4), "it rests");
         let text = blocked.message();
         assert!(
-            text.contains("; the target is in reach, but no straight way of the joints to it is clear: "),
+            text.contains("; the target is in reach, but no straight way of the joints to it was found: "),
             "{text}"
         );
         session.set_obstacles(None, vec![]).unwrap();

@@ -55,8 +55,8 @@ impl Away {
         }
     }
 
-    /// What is said where no line of the joints is clear.
-    pub(super) const NO_WAY: &str = "the target is in reach, but no straight way of the joints to it is clear";
+    /// What is said where no line of the joints is clear, holds the arm and keeps all that must hold; or where the arm could not follow one.
+    pub(super) const NO_WAY: &str = "the target is in reach, but no straight way of the joints to it was found";
 
     /// What holds the arm, as the beginning of a sentence.
     fn holder(&self, joint: impl Fn(usize) -> String) -> String {
