@@ -68,6 +68,7 @@ WRONG: list[tuple[Any, str]] = [
     ),
     ([3], "move 0: expected an object with the key 'move', got 3"),
     ([{"move": "jump"}], "move 0: 'move' must be one of joints, line, arc, wait, got 'jump'"),
+    ([{"move": ["line"]}], "move 0: 'move' must be one of joints, line, arc, wait, got ['line']"),
     ([{"move": "wait", "seconds": 1.0}, {"move": "line"}], "move 1: a line needs 'to'"),
     (
         [{"move": "wait", "seconds": 1.0, "sped": 2.0}],

@@ -10,7 +10,7 @@ use crate::limits::AdmittedStart;
 use crate::message::{Setting, message};
 use crate::plan::{AlongPathMethod, AlongPathOptions, Cost, Plan};
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status};
+use crate::solver::{Monitor, Status, Stop, Stopwatch};
 use crate::timing::ConstantLimits;
 use crate::tpbso;
 
@@ -114,24 +114,13 @@ fn plan_admitted(
 ) -> Result<Plan> {
     let space = options.surroundings.clear_space(robot)?;
     match (&options.method, &space) {
-        (AlongPathMethod::Timed, space) => {
-            let mut along = |tip_path: &TipPath| {
-                let problem = PathProblem::new(robot, tip_path, keeps, options)?;
-                match space {
-                    None => free_motion(&problem, monitor),
-                    Some(space) => clear_path::along_path(&problem, Some(space), monitor),
-                }
-            };
-            let planned = along(tip_path);
-            if tip_path.largest_tolerance() == 0.0
-                || !is_lost(&planned)
-                || matches!(planned, Err(Error::Unreachable { .. }))
-            {
-                return planned;
+        (AlongPathMethod::Timed, space) => within_tolerance(tip_path, options.stop, |tip_path| {
+            let problem = PathProblem::new(robot, tip_path, keeps, options)?;
+            match space {
+                None => free_motion(&problem, monitor),
+                Some(space) => clear_path::along_path(&problem, Some(space), monitor),
             }
-            let mut narrower = PARTS.into_iter().map(|part| along(&tip_path.within_part(part)));
-            narrower.find(|planned| !is_lost(planned)).unwrap_or(planned)
-        }
+        }),
         (AlongPathMethod::Tpbso(_), _) if options.task.is_some() || space.is_some() => Err(Error::Contradiction {
             problem: message!["along a path a task, obstacles and self-collision need ", Setting::Method("timed")],
         }),
@@ -149,6 +138,30 @@ fn plan_admitted(
         }),
         (AlongPathMethod::Tpbso(tpbso), _) => tpbso::along_path(robot, tip_path, tpbso, options, monitor),
     }
+}
+
+/// Plans within the whole tolerance and, where no motion is found, within parts of it, until the time of `stop` is over.
+fn within_tolerance(
+    tip_path: &TipPath,
+    stop: Option<Stop>,
+    mut along: impl FnMut(&TipPath) -> Result<Plan>,
+) -> Result<Plan> {
+    let stopwatch = Stopwatch::start();
+    let planned = along(tip_path);
+    if tip_path.largest_tolerance() == 0.0 || !is_lost(&planned) || matches!(planned, Err(Error::Unreachable { .. })) {
+        return planned;
+    }
+    let evaluations_of = |planned: &Result<Plan>| planned.as_ref().map_or(0, |plan| plan.evaluations);
+    let mut evaluations = evaluations_of(&planned);
+    let is_over = || stop.and_then(|stop| stop.max_time).is_some_and(|most| stopwatch.elapsed() >= most);
+    for part in PARTS.into_iter().take_while(|_| !is_over()) {
+        let narrower = along(&tip_path.within_part(part));
+        evaluations += evaluations_of(&narrower);
+        if !is_lost(&narrower) {
+            return narrower.map(|plan| Plan { evaluations, elapsed: stopwatch.elapsed(), ..plan });
+        }
+    }
+    planned
 }
 
 /// Plans without regard to obstacles: around a motion that follows the path from a few starts or, where that leads to no plan without

@@ -1,7 +1,7 @@
 """`beetle-ik plan moves`: plans a program of moves from a file."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -142,13 +142,7 @@ def read_program(file: Path) -> Program:
 
 
 def _task(where: str, given: Any) -> Task:
-    kinds = ", ".join(_TASKS)
-    if not isinstance(given, dict):
-        raise InvalidInputError(f"{where}: expected an object with the key 'kind', got {given!r}")
-    rest = dict(given)
-    kind = rest.pop("kind", None)
-    if kind not in _TASKS:
-        raise InvalidInputError(f"{where}: 'kind' must be one of {kinds}, got {kind!r}")
+    kind, rest = _taken(where, given, "kind", _TASKS)
     _allow(where, f"{kind} task", rest, _TASK_KEYS[kind])
     read: dict[str, np.ndarray] = {key: _numbers(where, key, value, None) for key, value in rest.items()}
     if "tool" in read:
@@ -159,19 +153,24 @@ def _task(where: str, given: Any) -> Task:
         raise type(error)(f"{where}: {error}") from error
 
 
+def _taken(where: str, given: Any, key: str, known: Collection[str]) -> tuple[str, dict[str, Any]]:
+    """Returns which of the known kinds an object names by `key`, and the rest of the object."""
+    if not isinstance(given, dict):
+        raise InvalidInputError(f"{where}: expected an object with the key '{key}', got {given!r}")
+    rest = dict(given)
+    kind = rest.pop(key, None)
+    if not isinstance(kind, str) or kind not in known:
+        raise InvalidInputError(f"{where}: '{key}' must be one of {', '.join(known)}, got {kind!r}")
+    return kind, rest
+
+
 def _allow(where: str, what: str, given: dict[str, Any], allowed: set[str]) -> None:
     for key in sorted(given.keys() - allowed):
         raise InvalidInputError(f"{where}: unknown key '{key}'; a {what} takes {', '.join(sorted(allowed))}")
 
 
 def _move(where: str, given: Any) -> Move:
-    kinds = ", ".join(_KEYS)
-    if not isinstance(given, dict):
-        raise InvalidInputError(f"{where}: expected an object with the key 'move', got {given!r}")
-    rest = dict(given)
-    kind = rest.pop("move", None)
-    if kind not in _KEYS:
-        raise InvalidInputError(f"{where}: 'move' must be one of {kinds}, got {kind!r}")
+    kind, rest = _taken(where, given, "move", _KEYS)
     needed, allowed = _KEYS[kind]
     for key in sorted(needed - rest.keys()):
         raise InvalidInputError(f"{where}: a {kind} needs '{key}'")
