@@ -195,3 +195,52 @@ fn free_motion(problem: &PathProblem<'_>, monitor: &mut dyn Monitor) -> Result<P
         (result, _) => result,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::path::Waypoints;
+    use crate::task::{Components, Task, TaskKind};
+    use crate::timing::Violation;
+    use crate::trajectory::{Trajectory, polynomial};
+
+    /// Plans a path of positions with a tolerance of 1 mm, along which a motion is found within `most` of it only, by five evaluations; and
+    /// counts the tries.
+    fn plan_within(most: f64, stop: Option<Stop>) -> (Result<Plan>, usize) {
+        let points = Waypoints::new(vec![[0.0; 3], [1.0, 0.0, 0.0]], None).unwrap();
+        let components = Some(Components { weights: [1.0; 6], tolerance: Some([1e-3; 6]) });
+        let task = Task { components, ..Task::from(TaskKind::Position) };
+        let tip_path = TipPath::through(&points).unwrap().for_task(&task, Some(0.0)).unwrap();
+        let mut tries = 0;
+        let along = |tip_path: &TipPath| {
+            tries += 1;
+            let motion = Trajectory::new(vec!["a".into()], vec![0.0, 1.0], vec![polynomial([0.0])])?;
+            let plan = Plan { evaluations: 5, ..Plan::of(motion, Cost::Time, 1.0) };
+            let violations = vec![Violation { what: "speed".into(), value: 2.0, bound: 1.0, unit: "rad/s".into() }];
+            Ok(if tip_path.largest_tolerance() > most { Plan { violations, ..plan } } else { plan })
+        };
+        let planned = within_tolerance(&tip_path, stop, along);
+        (planned, tries)
+    }
+
+    #[test]
+    fn parts_of_a_tolerance_are_tried_until_one_leaves_a_motion() {
+        for (most, tries) in [(1.0, 1), (2e-4, 2), (2e-5, 3), (0.0, 4)] {
+            let (planned, tried) = plan_within(most, None);
+            let plan = planned.unwrap();
+            assert!(plan.violations.is_empty());
+            assert_eq!((tried, plan.evaluations), (tries, 5 * tries));
+        }
+    }
+
+    #[test]
+    fn no_part_is_tried_after_the_time_and_the_first_plan_is_kept() {
+        let stop = Stop { max_time: Some(Duration::ZERO), ..Stop::default() };
+        let (planned, tried) = plan_within(2e-4, Some(stop));
+        assert_eq!((tried, planned.unwrap().violations.len()), (1, 1));
+        let (planned, tried) = plan_within(-1.0, None);
+        assert_eq!((tried, planned.unwrap().violations.len()), (4, 1));
+    }
+}
