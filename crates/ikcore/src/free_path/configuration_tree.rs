@@ -1,9 +1,11 @@
 //! A tree of configurations, each joined to its parent by a clear straight line.
 
-use crate::rng::LazyRng;
+use smallvec::SmallVec;
 
-/// Number of sums that a distance is split into: one would wait for each addition.
-const SUMS: usize = 4;
+use crate::math::STACK_DOF;
+use crate::math::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
+use crate::math::vector::distance;
+use crate::rng::LazyRng;
 
 /// The tree. Distances are Euclidean in rad and m.
 #[derive(Debug)]
@@ -11,15 +13,33 @@ pub(super) struct ConfigurationTree {
     joints: usize,
     /// The configurations, one after another.
     nodes: Vec<f64>,
+    /// The same in single precision, eight in a block of one row for each joint: what a search for the nearest reads.
+    blocks: Vec<LaneRow>,
     parents: Vec<Option<usize>>,
     /// Number of times that each node was picked by [`little_tried`](Self::little_tried).
     tries: Vec<u32>,
 }
 
+/// Squared distance from a configuration.
+struct FromConfiguration<'q>(&'q [f32]);
+
+impl Distance for FromConfiguration<'_> {
+    #[inline(always)]
+    fn of(&self, block: &[LaneRow]) -> LaneRow {
+        let mut sums = [0.0; LANES];
+        for (row, q) in block.iter().zip(self.0) {
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += (value - q) * (value - q);
+            }
+        }
+        sums
+    }
+}
+
 impl ConfigurationTree {
     /// Plants a tree of configurations of `joints` joints with these roots.
     pub fn rooted<'q>(joints: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
-        let mut tree = Self { joints, nodes: vec![], parents: vec![], tries: vec![] };
+        let mut tree = Self { joints, nodes: vec![], blocks: vec![], parents: vec![], tries: vec![] };
         roots.into_iter().for_each(|root| _ = tree.add(root, None));
         tree
     }
@@ -36,17 +56,27 @@ impl ConfigurationTree {
 
     /// Adds a configuration; returns its number.
     pub fn add(&mut self, q: &[f64], parent: Option<usize>) -> usize {
+        let (block, lane) = (self.len() / LANES, self.len() % LANES);
+        // Places without a node are infinitely far from everything.
+        self.blocks.resize((block + 1) * self.joints, [f32::INFINITY; LANES]);
+        for (row, q) in self.blocks[block * self.joints..].iter_mut().zip(q) {
+            row[lane] = *q as f32;
+        }
         self.nodes.extend_from_slice(q);
         self.parents.push(parent);
         self.tries.push(0);
         self.len() - 1
     }
 
-    /// The nearest node to `q`, and its distance; `None` in an empty tree.
+    /// The nearest node to `q`, up to rounding in single precision, and its distance; `None` in an empty tree.
     pub fn nearest(&self, q: &[f64]) -> Option<(usize, f64)> {
-        let distances = self.nodes.chunks_exact(self.joints).map(|node| squared_distance(node, q)).enumerate();
-        let nearest = distances.min_by(|one, other| one.1.total_cmp(&other.1));
-        nearest.map(|(node, squared)| (node, squared.sqrt()))
+        if self.parents.is_empty() {
+            return None;
+        }
+        let single: SmallVec<[f32; STACK_DOF]> = q.iter().map(|q| *q as f32).collect();
+        let blocks = 0..self.len().div_ceil(LANES);
+        let [nearest, ..] = nearest_by_lane(&self.blocks, self.joints, blocks, &FromConfiguration(&single));
+        Some((nearest, distance(self.node(nearest), q)))
     }
 
     /// Picks the less often picked of two random nodes.
@@ -64,18 +94,6 @@ impl ConfigurationTree {
         path.reverse();
         path
     }
-}
-
-/// The squared distance of two configurations.
-fn squared_distance(one: &[f64], other: &[f64]) -> f64 {
-    let mut sums = [0.0; SUMS];
-    let (one, other) = (one.chunks(SUMS), other.chunks(SUMS));
-    for (a, b) in one.zip(other) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += (a - b) * (a - b);
-        }
-    }
-    sums.iter().sum()
 }
 
 #[cfg(test)]
@@ -102,7 +120,7 @@ mod tests {
             let distance = |node: &[f64]| node.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
             let (nearest, least) = tree.nearest(q).unwrap();
             assert!((distance(tree.node(nearest)) - least).abs() < 1e-14);
-            assert!((0..tree.len()).all(|node| distance(tree.node(node)) > least - 1e-14));
+            assert!((0..tree.len()).all(|node| distance(tree.node(node)) > least - 1e-6)); // single precision
         }
     }
 }

@@ -14,6 +14,7 @@
 //! | `box_step`, `block_step`, `row_step` | damped least-squares steps: in a box, for several tasks, with inequalities |
 //! | `joint_weights`, `overshoot` | steps by the joints that cost least, and weights with which ticks of them overshoot |
 //! | `ranked_step`, `level_step` | step for two objectives, one before the other; for any number in order |
+//! | `nearest_by_lane` | nearest of many points, eight compared at once |
 //! | `secant` | Jacobian estimated from differences |
 //! | `majorant`, `bernstein` | bounds of Taylor coefficients; polynomials within their control points |
 //! | `one_joint` | time-optimal motions of one joint between two states |
@@ -40,6 +41,7 @@ pub(crate) mod ldl;
 pub(crate) mod level_step;
 pub(crate) mod logarithm;
 pub(crate) mod majorant;
+pub(crate) mod nearest_by_lane;
 pub mod one_joint;
 pub(crate) mod overshoot;
 pub mod polynomial;

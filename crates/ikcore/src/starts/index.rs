@@ -11,11 +11,11 @@
 
 use std::f64::consts::TAU;
 
-use super::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
 use crate::kinematics::chain::{Chain, Transmission};
 use crate::kinematics::kernels::Kernels;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::nearest_by_lane::{Distance, LANES, LaneRow, nearest_by_lane};
 use crate::rng;
 
 /// Number of configurations: 1.4 MB for 7 joints, 3.1 MB for 32, built in about 4 ms.

@@ -3,10 +3,10 @@
 use super::index::{AXIS_WEIGHT, StartIndex, between_joints, turned_about_base_z};
 use std::f64::consts::PI;
 
-use super::nearest_by_lane::LANES;
 use crate::kinematics::chain::Chain;
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;
+use crate::math::nearest_by_lane::LANES;
 use crate::math::sampling_range;
 
 /// Indexed configurations with their tip near one target, nearest first.

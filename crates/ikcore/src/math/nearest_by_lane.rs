@@ -1,16 +1,16 @@
 //! Nearest-neighbour scan over blocks of entries, eight entries at once.
 
-use crate::math::arithmetic::by_instructions;
+use super::arithmetic::by_instructions;
 
 /// Number of entries compared at once, and of neighbours returned by a search.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// Values of one feature for eight entries.
-pub(super) type LaneRow = [f32; LANES];
+pub(crate) type LaneRow = [f32; LANES];
 
 /// Distance of the eight entries of a block from a query. A trait instead of a closure, since only a method can be
 /// `#[inline(always)]` and so be compiled with the instructions of its caller.
-pub(super) trait Distance {
+pub(crate) trait Distance {
     /// Returns the distances, or a monotonic function of them, lane by lane.
     fn of(&self, block: &[LaneRow]) -> LaneRow;
 }
@@ -20,7 +20,7 @@ pub(super) trait Distance {
 ///
 /// Only the first result is certain to be among the eight nearest entries; each further one is the nearest of one eighth of
 /// the entries. These are equally good as starts, and the scan needs no sorting.
-pub(super) fn nearest_by_lane(
+pub(crate) fn nearest_by_lane(
     rows: &[LaneRow],
     width: usize,
     blocks: impl Iterator<Item = usize>,
