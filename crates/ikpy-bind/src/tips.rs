@@ -150,7 +150,9 @@ impl TaskArguments<'_, '_> {
 
 /// Reads the `task` of a call that plans for several tips: one for all of them, or a dict by tip.
 pub fn read_tip_tasks(robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult<(Option<Task>, Vec<TipTask>)> {
-    let Some(dict) = value.and_then(|value| value.cast::<PyDict>().ok()) else { return Ok((read_task(value)?, vec![])) };
+    let Some(dict) = value.and_then(|value| value.cast::<PyDict>().ok()) else {
+        return Ok((read_task(value)?, vec![]));
+    };
     let tasks = Each::read("task", &robot.core, dict, None, |task| read_task(Some(task)))?;
     let of_tip = |(key, task): &(TipKey, Option<Task>)| match subject(&robot.core, key)? {
         Subject::Tip(tip) => Ok((tip, *task)),

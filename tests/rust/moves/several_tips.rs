@@ -114,8 +114,7 @@ fn configurations_are_chosen_for_both_arms_together() {
     // Of the left arm's configurations at the start of its first line, some leave no way along the second one, which begins after the right
     // arm has moved.
     let [left, right] = TIPS.map(|name| tip(name, &HOME));
-    let [begin, middle, end] =
-        [[-0.3, 0.1, 0.1], [-0.3, 0.1, -0.25], [0.1, 0.1, -0.25]].map(|by| moved(&left, by));
+    let [begin, middle, end] = [[-0.3, 0.1, 0.1], [-0.3, 0.1, -0.25], [0.1, 0.1, -0.25]].map(|by| moved(&left, by));
     let moves = [
         leading("left_tool", MoveKind::Joints(JointGoal::Pose(begin))),
         line("left_tool", middle, 0.0),
@@ -192,7 +191,8 @@ fn wrong_tips_are_named() {
         superfluous.to_string(),
         "move 0: it leads no tip to a pose, but names tip 'left_tool': leave the tip out"
     );
-    let other = said(&[line("left_tool", near, 0.01), line("right_tool", moved(&right, [0.0, 0.0, -0.05]), 0.0)], &PAIR);
+    let other =
+        said(&[line("left_tool", near, 0.01), line("right_tool", moved(&right, [0.0, 0.0, -0.05]), 0.0)], &PAIR);
     assert_eq!(
         other.to_string(),
         "move 0: its blend of 0.01 m leads into move 1, a move of another tip, before which the arm stops: give no blend"

@@ -259,7 +259,9 @@ impl<'a> Assembly<'a> {
     fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
         let MovesOptions { surroundings, keeps, limits, stop, seed, .. } = self.options;
         let limits = match part.tips {
-            [tip] if self.tips.len() > 1 => Some(tip.limits_with_others_at(&self.q, limits.as_ref(), self.around.limits)?),
+            [tip] if self.tips.len() > 1 => {
+                Some(tip.limits_with_others_at(&self.q, limits.as_ref(), self.around.limits)?)
+            }
             _ => limits.clone(),
         };
         let options = PointToPointOptions {

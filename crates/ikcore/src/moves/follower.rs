@@ -128,10 +128,11 @@ impl<'a> Follower<'a> {
         let widened = self.bounds_from(q);
         // A joint at its limit moves off it where the task leaves it the freedom: a motion along a limit swings beyond.
         let inside = self.tip.with_others_at(q, self.bounds.clone());
-        if !self.tip.task.is_whole() && !inside.contains(q) {
-            if let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside]) {
-                return Ok(track);
-            }
+        if !self.tip.task.is_whole()
+            && !inside.contains(q)
+            && let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside])
+        {
+            return Ok(track);
         }
         self.follow_within(path, q, lead, [&widened, &widened])
     }

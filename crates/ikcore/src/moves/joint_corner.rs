@@ -49,8 +49,7 @@ impl JointCorner {
         let [end, start] = [before.breaks()[before.pieces()], after.breaks()[0]];
         let mut q = Point::from_elem(0.0, after.joints().len());
         after.position(start, &mut q);
-        let balls: Vec<Ball<'_>> =
-            tips.iter().map(|tip| Ball { tip, center: tip.position(&q) }).collect();
+        let balls: Vec<Ball<'_>> = tips.iter().map(|tip| Ball { tip, center: tip.position(&q) }).collect();
         let mut ball = radius;
         for _ in 0..SHRINKINGS {
             let left = crossing(&balls, before, ball, [end, first]);

@@ -38,7 +38,8 @@ impl ProgramPlanner<'_> {
         let blocks = blocks(tips, &stages, moves, start);
         let searches = tips.iter().map(|tip| self.search(tip)).collect::<Result<Vec<_>>>()?;
         let mut ladder = Ladder::new(around, tips, &searches);
-        let of_task = |(tip, each): (&MovingTip<'_>, &SolveOptions)| SolveOptions { task: tip.task.searched(), ..each.clone() };
+        let of_task =
+            |(tip, each): (&MovingTip<'_>, &SolveOptions)| SolveOptions { task: tip.task.searched(), ..each.clone() };
         let searches = tips.iter().zip(&searches).map(of_task).collect();
         let climber = Climber { tips, limits, moves, blocks: &blocks, searches, explains };
         let rungs = match ladder.climb(&blocks, start, monitor)? {
@@ -69,7 +70,8 @@ impl ProgramPlanner<'_> {
 
     /// Options of searches for configurations of a tip. What several tips keep clear of is for the ladder, which knows all joints.
     fn search(&self, tip: &MovingTip<'_>) -> Result<SolveOptions> {
-        let surroundings = if self.tips.len() == 1 { self.options.surroundings.clone() } else { Surroundings::default() };
+        let surroundings =
+            if self.tips.len() == 1 { self.options.surroundings.clone() } else { Surroundings::default() };
         Ok(SolveOptions {
             limits: Some(tip.solved_limits(self.around.limits)?),
             surroundings,
