@@ -38,8 +38,8 @@ const WITHIN: f64 = 0.5;
 /// Fraction of a stride by which one at least brings a tree nearer to its goal.
 const LEAST_GAIN: f64 = 0.1;
 
-/// Budget of node comparisons per configuration of the budget: about as much work again.
-const COMPARISONS: usize = 100;
+/// Budget of node comparisons per configuration of the budget: up to twice its work again.
+const COMPARISONS: usize = 300;
 /// Cost of drawing a sample, in comparisons.
 const SAMPLE: usize = 10;
 /// Cost of a sample that no constraint admits, in comparisons.

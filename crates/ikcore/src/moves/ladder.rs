@@ -7,20 +7,20 @@
 use super::around::MoveSurroundings;
 use super::follower::{Follower, Lead, Lost, Track};
 use super::move_configurations::MoveConfigurations;
-use super::move_task::MoveTask;
+use super::moving_tip::{MovingTip, led_by};
 use super::outline::{Stage, StageKind};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::ToolPath;
 use crate::error::Result;
-use crate::ik::{SolveOptions, bring_near};
+use crate::ik::SolveOptions;
 use crate::math::Pose;
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Point};
-use crate::robot::{Robot, limit_rounding};
+use crate::robot::limit_rounding;
 use crate::solver::Monitor;
 use crate::timing::ConstantLimits;
 
-/// Largest number of rungs of a step of the ladder; the quickest are kept.
+/// Largest number of rungs of a step of the ladder for each tip; the quickest are kept.
 const MOST_RUNGS: usize = 24;
 
 /// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
@@ -48,6 +48,10 @@ const SAME: f64 = 1e-6;
 pub(super) struct LadderBlock<'a> {
     /// The joint move at its start; `None` for what comes before the first joint move.
     pub goal: Option<(usize, &'a JointGoal)>,
+    /// Number of the tip that it leads to a pose.
+    pub tip: usize,
+    /// A configuration in which those joints are as in this block that no move of a tip moves.
+    pub stem: &'a [f64],
     /// The paths of the tip after it.
     pub paths: Vec<&'a ToolPath>,
 }
@@ -89,14 +93,24 @@ impl Rung {
     }
 }
 
-/// The blocks of a program.
-pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<LadderBlock<'a>> {
-    let mut blocks = vec![LadderBlock { goal: None, paths: vec![] }];
+/// The blocks of a program that begins at the configuration `start`.
+pub(super) fn blocks<'a>(
+    tips: &[MovingTip<'_>],
+    stages: &'a [Stage],
+    moves: &'a [Move],
+    start: &'a [f64],
+) -> Vec<LadderBlock<'a>> {
+    let mut stem = start;
+    let mut blocks = vec![LadderBlock { goal: None, tip: 0, stem, paths: vec![] }];
     for Stage { kind, .. } in stages {
         match kind {
             StageKind::Joints(index) => {
                 if let MoveKind::Joints(goal) = &moves[*index].kind {
-                    blocks.push(LadderBlock { goal: Some((*index, goal)), paths: vec![] });
+                    if let JointGoal::Configuration(q) = goal {
+                        stem = q;
+                    }
+                    let tip = led_by(tips, &moves[*index])[0].number;
+                    blocks.push(LadderBlock { goal: Some((*index, goal)), tip, stem, paths: vec![] });
                 }
             }
             StageKind::Along(path) => {
@@ -112,36 +126,37 @@ pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<LadderBl
 
 /// The search for the configurations of a program.
 pub(super) struct Ladder<'a> {
-    robot: &'a Robot,
     limits: &'a ConstantLimits,
     around: MoveSurroundings<'a>,
-    /// Whether what the tip has to meet leaves the arm a self-motion.
-    is_redundant: bool,
-    follower: Follower<'a>,
-    task: MoveTask,
-    each: SolveOptions,
+    tips: &'a [MovingTip<'a>],
+    /// One for each tip.
+    followers: Vec<Follower<'a>>,
+    /// Options of searches for each tip.
+    searches: &'a [SolveOptions],
     /// Evaluations of the kinematics so far.
     pub evaluations: usize,
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(around: MoveSurroundings<'a>, (robot, task): (&'a Robot, MoveTask), each: SolveOptions) -> Self {
+    pub fn new(around: MoveSurroundings<'a>, tips: &'a [MovingTip<'a>], searches: &'a [SolveOptions]) -> Self {
         let limits = around.limits;
-        let is_redundant = task.leaves_freedom(robot.dof());
-        let bounds = if is_redundant {
-            let [lower, upper] = limits.inset_positions(INSET);
-            Bounds::from_ranges(lower.into_iter().zip(upper))
-        } else {
-            // Whole turns are chosen afterwards, so that one path serves all of them.
-            Bounds::from_ranges((0..robot.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
+        let follower = |tip: &'a MovingTip<'a>| {
+            let bounds = if tip.is_redundant() {
+                let [lower, upper] = limits.inset_positions(INSET);
+                Bounds::from_ranges(lower.into_iter().zip(upper))
+            } else {
+                // Whole turns are chosen afterwards, so that one path serves all of them.
+                Bounds::from_ranges((0..tip.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
+            };
+            Follower::new(tip, bounds)
         };
-        let follower = Follower::new(robot, task, bounds);
-        Self { robot, limits, around, is_redundant, follower, task, each, evaluations: 0 }
+        let followers = tips.iter().map(follower).collect();
+        Self { limits, around, tips, followers, searches, evaluations: 0 }
     }
 
-    /// The follower, for refinement.
-    pub fn follower(&mut self) -> &mut Follower<'a> {
-        &mut self.follower
+    /// The follower of tip number `tip`, for refinement.
+    pub fn follower(&mut self, tip: usize) -> &mut Follower<'a> {
+        &mut self.followers[tip]
     }
 
     /// The quickest sequence of rungs from the configuration `start`; the index of a block that has none, and why.
@@ -157,7 +172,7 @@ impl<'a> Ladder<'a> {
         let mut ladder: Vec<Vec<Rung>> = vec![];
         for (i, block) in blocks.iter().enumerate() {
             let found = match (&block.goal, ladder.last()) {
-                (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
+                (Some((_, goal)), Some(before)) => self.rungs(block.tip, goal, &block.paths, before, monitor)?,
                 _ => self
                     .tracks_by_any_lead(start, &block.paths, monitor)?
                     .map(|tracks| vec![self.rung(start.into(), tracks)]),
@@ -175,46 +190,51 @@ impl<'a> Ladder<'a> {
             chosen.push(rung);
         }
         chosen.reverse();
-        self.evaluations += self.follower.evaluations;
+        self.evaluations += self.followers.iter().map(|follower| follower.evaluations).sum::<usize>();
         Ok(Ok(chosen))
     }
 
     /// The rungs of a block after those of the block `before`, the quickest first.
     fn rungs(
         &mut self,
+        tip: usize,
         goal: &JointGoal,
         paths: &[&ToolPath],
         before: &[Rung],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Rung>, Dead>> {
         let (mut rungs, mut failed) = (vec![], None);
+        let tip = &self.tips[tip];
+        let groups = groups(tip, before);
         match goal {
             JointGoal::Configuration(q) => match self.tracks_by_any_lead(q, paths, monitor)? {
-                Ok(tracks) => rungs.push(self.after(before, q.as_slice().into(), tracks)),
+                Ok(tracks) => rungs.push(self.after(&groups.concat(), q.as_slice().into(), tracks)),
                 Err(dead) => failed = Some(dead),
             },
             JointGoal::Pose(pose) => {
-                let candidates = match self.configurations(pose, before[0].end(), monitor)? {
+                let candidates = match self.configurations(tip, pose, before[0].end(), monitor)? {
                     Ok(candidates) => candidates,
                     Err(why) => return Ok(Err(Dead::Goal(why))),
                 };
-                let enough = if self.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
+                let enough = if tip.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
                 for candidate in candidates.iter().take(MOST_FOLLOWED) {
-                    if self.is_redundant && rungs.len() >= enough {
+                    if tip.is_redundant() && rungs.len() >= enough {
                         break;
                     }
-                    match self.placed(candidate, paths, before) {
-                        Ok(more) => rungs.extend(more),
-                        Err(dead) => failed = Some(farther(failed, dead)),
+                    for group in &groups {
+                        match self.placed(tip, candidate, paths, group) {
+                            Ok(more) => rungs.extend(more),
+                            Err(dead) => failed = Some(farther(failed, dead)),
+                        }
                     }
                 }
                 for candidate in candidates.iter().take(MOST_LED) {
-                    if !self.is_redundant || !rungs.is_empty() {
+                    if !tip.is_redundant() || !rungs.is_empty() {
                         break;
                     }
-                    let q = self.near(candidate, before);
+                    let q = self.near(tip, candidate, &groups[0]);
                     match self.tracks_by_any_lead(&q, paths, monitor)? {
-                        Ok(tracks) => rungs.push(self.after(before, q, tracks)),
+                        Ok(tracks) => rungs.push(self.after(&groups[0], q, tracks)),
                         Err(dead) => failed = Some(farther(failed, dead)),
                     }
                 }
@@ -226,38 +246,46 @@ impl<'a> Ladder<'a> {
         }
         rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
         rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
-        rungs.truncate(MOST_RUNGS);
+        rungs.truncate(MOST_RUNGS * self.tips.len());
         Ok(Ok(rungs))
     }
 
     /// Configurations at a pose, those nearest to `reference` first; why there are none.
     fn configurations(
         &mut self,
+        tip: &'a MovingTip<'a>,
         pose: &Pose,
         reference: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Point>, crate::message::Message>> {
-        let Self { robot, task, each, follower, .. } = self;
-        MoveConfigurations { robot, task, each, follower }.at(pose, reference, monitor)
+        let (each, follower) = (&self.searches[tip.number], &mut self.followers[tip.number]);
+        MoveConfigurations { tip, each, follower }.at(pose, reference, monitor)
     }
 
-    /// The rungs of one configuration at the start of a block, at the whole turns that suit each of the rungs before.
-    fn placed(&mut self, candidate: &[f64], paths: &[&ToolPath], before: &[Rung]) -> Result<Vec<Rung>, Dead> {
-        if self.is_redundant {
-            let q = self.near(candidate, before);
+    /// The rungs of one configuration of a tip at the start of a block, at the whole turns that suit each of the rungs before.
+    fn placed(
+        &mut self,
+        tip: &MovingTip<'_>,
+        candidate: &[f64],
+        paths: &[&ToolPath],
+        before: &[Before<'_>],
+    ) -> Result<Vec<Rung>, Dead> {
+        if tip.is_redundant() {
+            let q = self.near(tip, candidate, before);
             let tracks = self.tracks(&q, paths, None)?;
             return Ok(vec![self.after(before, q, tracks)]);
         }
+        let candidate = &tip.whole(&tip.own(candidate), before[0].1.end());
         let tracks = self.follow_all(candidate, paths, None)?;
         let mut rungs: Vec<Rung> = vec![];
-        for rung in before {
+        for (_, rung) in before {
             let turns = self
-                .turns(candidate, &tracks, rung.end())
+                .turns(tip, candidate, &tracks, rung.end())
                 .map_err(|(joint, value)| self.beyond(&tracks, joint, value))?;
             let moved = |values: &[f64]| values.iter().zip(&turns).map(|(q, turn)| q + turn).collect::<Point>();
             let q = moved(tracks.first().map_or(candidate, |track| track.row(0)));
             if rungs.iter().all(|known| largest_difference(&known.q, &q) > SAME) {
-                let n = self.robot.dof();
+                let n = tip.dof();
                 let tracks = tracks.iter().map(|track| Track {
                     knots: track.knots.clone(),
                     rows: track.rows.chunks_exact(n).flat_map(&moved).collect(),
@@ -269,11 +297,10 @@ impl<'a> Ladder<'a> {
         Ok(rungs)
     }
 
-    /// A configuration at the whole turns nearest to the end of the quickest rung `before`.
-    fn near(&self, candidate: &[f64], before: &[Rung]) -> Point {
-        let mut q = Point::from_slice(candidate);
-        bring_near(self.robot, &Bounds::from_ranges(self.ranges()), before[0].end(), &mut q);
-        q
+    /// A configuration of a tip at the whole turns nearest to the end of the quickest rung `before`.
+    fn near(&self, tip: &MovingTip<'_>, candidate: &[f64], before: &[Before<'_>]) -> Point {
+        let end = before[0].1.end();
+        tip.near(&tip.whole(&tip.own(candidate), end), &Bounds::from_ranges(self.ranges()), end)
     }
 
     /// Follows all paths from `q` with the least motion of the joints. Where that leads a redundant arm into a limit, a singularity or an
@@ -288,14 +315,15 @@ impl<'a> Ladder<'a> {
         paths: &[&ToolPath],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Track>, Dead>> {
-        let dead = match self.tracks(q, paths, None) {
-            Err(dead @ Dead::Path { .. }) if self.is_redundant => dead,
+        let (dead, path, at) = match self.tracks(q, paths, None) {
+            Err(dead @ Dead::Path { path, at, .. }) if self.tips[paths[path].tip].is_redundant() => (dead, path, at),
             other => return Ok(other),
         };
-        let Dead::Path { path, at, .. } = &dead else { return Ok(Err(dead)) };
-        let length = paths[..*path].iter().map(|path| path.length()).sum::<f64>() + at;
-        let end = Pose::from(paths[*path].pose(paths[*path].length()));
-        let mut leads = self.configurations(&end, q, monitor)?.unwrap_or_default();
+        let tip = &self.tips[paths[path].tip];
+        let before = paths[..path].iter().filter(|path| path.tip == tip.number);
+        let length = before.map(|path| path.length()).sum::<f64>() + at;
+        let end = Pose::from(paths[path].pose(paths[path].length()));
+        let mut leads = self.configurations(tip, &end, q, monitor)?.unwrap_or_default();
         leads.truncate(MOST_LED_TO);
         let middle = |((lower, upper), q): ((f64, f64), &f64)| {
             let middle = 0.5 * (lower + upper);
@@ -305,7 +333,7 @@ impl<'a> Ladder<'a> {
         let mut failed = dead;
         for part in LEAD_WITHIN {
             for toward in &leads {
-                let lead = Lead { toward, within: part * length.max(LEAST_LENGTH) };
+                let lead = Lead { tip: tip.number, toward, within: part * length.max(LEAST_LENGTH) };
                 match self.tracks(q, paths, Some(&lead)) {
                     Ok(tracks) => return Ok(Ok(tracks)),
                     Err(dead) => failed = farther(Some(failed), dead),
@@ -318,7 +346,7 @@ impl<'a> Ladder<'a> {
     /// Follows all paths from `q`, and checks limits.
     fn tracks(&mut self, q: &[f64], paths: &[&ToolPath], lead: Option<&Lead<'_>>) -> Result<Vec<Track>, Dead> {
         let tracks = self.follow_all(q, paths, lead)?;
-        for joint in 0..self.robot.dof() {
+        for joint in 0..q.len() {
             let [lowest, highest] = range(q, &tracks, joint);
             if let Some(value) = self.excess(joint, [lowest, highest]) {
                 return Err(self.beyond(&tracks, joint, value));
@@ -332,7 +360,8 @@ impl<'a> Ladder<'a> {
         for (i, path) in paths.iter().enumerate() {
             let from = tracks.last().map_or(q, Track::end).to_vec();
             let lost = |Lost { at }| Dead::Path { path: i, at, cause: Cause::OutOfReach };
-            tracks.push(self.follower.follow(path, &from, lead).map_err(lost)?);
+            let lead = lead.filter(|lead| lead.tip == path.tip);
+            tracks.push(self.followers[path.tip].follow(path, &from, lead).map_err(lost)?);
         }
         match self.blocked(q, &tracks) {
             None => Ok(tracks),
@@ -357,13 +386,19 @@ impl<'a> Ladder<'a> {
         })
     }
 
-    /// Whole turns of each joint (rad) with which a block stays inside the limits, as near to `reference` at its start as possible; the
-    /// joint and its value where none do.
-    fn turns(&self, q: &[f64], tracks: &[Track], reference: &[f64]) -> Result<Point, (usize, f64)> {
+    /// Whole turns of each joint (rad) of a tip with which a block stays inside the limits, as near to `reference` at its start as possible;
+    /// the joint and its value where none do.
+    fn turns(
+        &self,
+        tip: &MovingTip<'_>,
+        q: &[f64],
+        tracks: &[Track],
+        reference: &[f64],
+    ) -> Result<Point, (usize, f64)> {
         let start = tracks.first().map_or(q, |track| track.row(0));
         let of_joint = |joint: usize| {
             let ends = range(start, tracks, joint);
-            let Some(period) = self.robot.turn_period(joint) else {
+            let Some(period) = tip.turn_period(joint) else {
                 return self.excess(joint, ends).map_or(Ok(0.0), |value| Err((joint, value)));
             };
             let [lower, upper] = [self.limits.lower[joint], self.limits.upper[joint]];
@@ -376,7 +411,7 @@ impl<'a> Ladder<'a> {
             }
             Ok(((reference[joint] - start[joint]) / period).round().clamp(fewest, most) * period)
         };
-        (0..self.robot.dof()).map(of_joint).collect()
+        (0..q.len()).map(of_joint).collect()
     }
 
     /// The end of this range that is farther beyond the limits of a joint.
@@ -416,10 +451,10 @@ impl<'a> Ladder<'a> {
     }
 
     /// A rung after the quickest of those `before`.
-    fn after(&self, before: &[Rung], q: Point, tracks: Vec<Track>) -> Rung {
+    fn after(&self, before: &[Before<'_>], q: Point, tracks: Vec<Track>) -> Rung {
         let Rung { q, tracks, .. } = self.rung(q, tracks);
         let total = |rung: &Rung| rung.cost + self.joint_time(rung.end(), &q);
-        let costs = before.iter().map(total).enumerate();
+        let costs = before.iter().map(|(index, rung)| (*index, total(rung)));
         let (index, cost) = costs.min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((0, 0.0));
         let along: f64 = tracks.iter().map(|track| self.track_time(track)).sum();
         Rung { q, tracks, cost: cost + along, before: index }
@@ -432,7 +467,7 @@ impl<'a> Ladder<'a> {
             let (v, a) = (self.limits.velocity[joint], self.limits.acceleration[joint]);
             if way * a < v * v { 2.0 * (way / a).sqrt() } else { way / v + v / a }
         };
-        (0..self.robot.dof()).map(time).fold(0.0, f64::max)
+        (0..from.len()).map(time).fold(0.0, f64::max)
     }
 
     /// Least time (s) along a track at full joint speeds.
@@ -447,6 +482,25 @@ impl<'a> Ladder<'a> {
     fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
         self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied())
     }
+}
+
+/// A rung of the block before, by its index.
+type Before<'r> = (usize, &'r Rung);
+
+/// The rungs of the block before, by where they leave the joints that do not move this tip alone; the quickest of each come first.
+fn groups<'r>(tip: &MovingTip<'_>, before: &'r [Rung]) -> Vec<Vec<Before<'r>>> {
+    let mut groups: Vec<Vec<Before<'r>>> = vec![];
+    for rung in before.iter().enumerate() {
+        let is_like = |group: &&mut Vec<Before<'_>>| {
+            let pairs = group[0].1.end().iter().zip(rung.1.end());
+            pairs.enumerate().all(|(joint, (one, other))| tip.is_moved_by(joint) || (one - other).abs() < SAME)
+        };
+        match groups.iter_mut().find(is_like) {
+            Some(group) => group.push(rung),
+            None => groups.push(vec![rung]),
+        }
+    }
+    groups
 }
 
 /// Smallest and largest value of a joint along tracks that begin at `q`.

@@ -6,6 +6,7 @@
 //! | `around` | obstacles, and what is kept on the way |
 //! | `leg`, `corner`, `tool_path` | lines and arcs by their length, rounded corners, the path from stop to stop |
 //! | `move_task` | what moves must meet of their poses |
+//! | `moving_tip` | tips, what each must meet, and the joints that move it |
 //! | `outline` | a program as steps from rest to rest |
 //! | `follower` | joint positions along a path, by Newton's method and splines |
 //! | `move_configurations` | configurations in which the tip meets a pose |
@@ -28,6 +29,7 @@ mod leg;
 mod move_configurations;
 mod move_task;
 mod moves_options;
+mod moving_tip;
 mod outline;
 mod plan_moves;
 mod program;
