@@ -1,13 +1,13 @@
 //! The motion of a whole program, step by step.
 
 use super::around::{ADVICE_HOLD, MoveSurroundings};
-use super::ladder::Rung;
 use super::moves_options::MovesOptions;
 use super::moving_tip::{MovingTip, led_by};
 use super::outline::{Stage, StageKind};
 use super::program::Move;
 use super::report::{bounds_on, speed_on, tip_speed};
 use super::run::{Run, RunPart};
+use super::rung::Rung;
 use super::timing::{PathTime, path_times, time_at, timed, times_between};
 use crate::error::{Error, Result};
 use crate::free_path;

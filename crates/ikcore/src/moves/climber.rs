@@ -1,9 +1,11 @@
 //! The search for the configurations of a program, and words for what it does not find.
 
 use super::follower::{Lost, Stray};
-use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung};
+use super::ladder::Ladder;
+use super::ladder_block::LadderBlock;
 use super::moving_tip::MovingTip;
 use super::program::{JointGoal, Move};
+use super::rung::{Cause, Dead, Rung};
 use super::tool_path::ToolPath;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolveOptions, solve_all};

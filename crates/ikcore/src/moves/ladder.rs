@@ -6,10 +6,11 @@
 
 use super::around::MoveSurroundings;
 use super::follower::{Follower, Lead, Lost, Track};
+use super::ladder_block::LadderBlock;
 use super::move_configurations::MoveConfigurations;
-use super::moving_tip::{MovingTip, led_by};
-use super::outline::{Stage, StageKind};
-use super::program::{JointGoal, Move, MoveKind};
+use super::moving_tip::MovingTip;
+use super::program::JointGoal;
+use super::rung::{Before, Cause, Dead, Rung, SAME, farther, groups, range};
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::ik::SolveOptions;
@@ -39,90 +40,6 @@ const LEAST_LENGTH: f64 = 0.01;
 
 /// Distance (rad, m) from limits within which the path of a redundant arm stays where it can: splines swing a little between knots.
 const INSET: f64 = 1e-3;
-
-/// Joint difference below which two configurations are one.
-const SAME: f64 = 1e-6;
-
-/// A block of a program.
-#[derive(Debug)]
-pub(super) struct LadderBlock<'a> {
-    /// The joint move at its start; `None` for what comes before the first joint move.
-    pub goal: Option<(usize, &'a JointGoal)>,
-    /// Number of the tip that it leads to a pose.
-    pub tip: usize,
-    /// A configuration in which those joints are as in this block that no move of a tip moves.
-    pub stem: &'a [f64],
-    /// The paths of the tip after it.
-    pub paths: Vec<&'a ToolPath>,
-}
-
-/// Configuration at the start of a block, and the joint positions along its paths.
-#[derive(Debug, Clone)]
-pub(super) struct Rung {
-    pub q: Point,
-    pub tracks: Vec<Track>,
-    /// Estimate of the time up to the end of the block (s).
-    cost: f64,
-    /// The rung of the block before.
-    before: usize,
-}
-
-/// Why a block has no rung.
-#[derive(Debug)]
-pub(super) enum Dead {
-    /// The goal of the joint move has no configuration: why.
-    Goal(crate::message::Message),
-    /// A path is lost at this length.
-    Path { path: usize, at: f64, cause: Cause },
-}
-
-/// What ends the following of a path.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cause {
-    /// No configuration nearby continues it.
-    OutOfReach,
-    /// A joint would have to go to this value.
-    Limit { joint: usize, value: f64 },
-    /// Something is in the way, what is to be kept is broken, or a joint cannot hold the arm: which, with advice.
-    Blocked(String),
-}
-
-impl Rung {
-    fn end(&self) -> &[f64] {
-        self.tracks.last().map_or(&self.q, Track::end)
-    }
-}
-
-/// The blocks of a program that begins at the configuration `start`.
-pub(super) fn blocks<'a>(
-    tips: &[MovingTip<'_>],
-    stages: &'a [Stage],
-    moves: &'a [Move],
-    start: &'a [f64],
-) -> Vec<LadderBlock<'a>> {
-    let mut stem = start;
-    let mut blocks = vec![LadderBlock { goal: None, tip: 0, stem, paths: vec![] }];
-    for Stage { kind, .. } in stages {
-        match kind {
-            StageKind::Joints(index) => {
-                if let MoveKind::Joints(goal) = &moves[*index].kind {
-                    if let JointGoal::Configuration(q) = goal {
-                        stem = q;
-                    }
-                    let tip = led_by(tips, &moves[*index])[0].number;
-                    blocks.push(LadderBlock { goal: Some((*index, goal)), tip, stem, paths: vec![] });
-                }
-            }
-            StageKind::Along(path) => {
-                if let Some(block) = blocks.last_mut() {
-                    block.paths.push(path);
-                }
-            }
-            StageKind::Rest(..) => {}
-        }
-    }
-    blocks
-}
 
 /// The search for the configurations of a program.
 pub(super) struct Ladder<'a> {
@@ -172,7 +89,7 @@ impl<'a> Ladder<'a> {
         let mut ladder: Vec<Vec<Rung>> = vec![];
         for (i, block) in blocks.iter().enumerate() {
             let found = match (&block.goal, ladder.last()) {
-                (Some((_, goal)), Some(before)) => self.rungs(block.tip, goal, &block.paths, before, monitor)?,
+                (Some((_, goal)), Some(before)) => self.rungs(block, goal, before, monitor)?,
                 _ => self
                     .tracks_by_any_lead(start, &block.paths, monitor)?
                     .map(|tracks| vec![self.rung(start.into(), tracks)]),
@@ -194,60 +111,69 @@ impl<'a> Ladder<'a> {
         Ok(Ok(chosen))
     }
 
-    /// The rungs of a block after those of the block `before`, the quickest first.
+    /// The rungs of a block that begins with a joint move, after those of the block `before`; the quickest first.
     fn rungs(
         &mut self,
-        tip: usize,
+        block: &LadderBlock<'_>,
         goal: &JointGoal,
-        paths: &[&ToolPath],
         before: &[Rung],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Rung>, Dead>> {
+        let found = match goal {
+            JointGoal::Configuration(q) => {
+                let before: Vec<Before<'_>> = before.iter().enumerate().collect();
+                let tracks = self.tracks_by_any_lead(q, &block.paths, monitor)?;
+                tracks.map(|tracks| vec![self.after(&before, q.as_slice().into(), tracks)])
+            }
+            JointGoal::Pose(pose) => self.rungs_at(pose, block, before, monitor)?,
+        };
+        Ok(found.map(|mut rungs| {
+            rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+            rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
+            rungs.truncate(MOST_RUNGS * self.tips.len());
+            rungs
+        }))
+    }
+
+    /// The rungs of a block whose joint move leads a tip to a pose.
+    fn rungs_at(
+        &mut self,
+        pose: &Pose,
+        block: &LadderBlock<'_>,
+        before: &[Rung],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Rung>, Dead>> {
+        let (tip, paths) = (&self.tips[block.tip], &block.paths);
         let (mut rungs, mut failed) = (vec![], None);
-        let tip = &self.tips[tip];
+        let candidates = match self.configurations(tip, pose, before[0].end(), monitor)? {
+            Ok(candidates) => candidates,
+            Err(why) => return Ok(Err(Dead::Goal(why))),
+        };
         let groups = groups(tip, before);
-        match goal {
-            JointGoal::Configuration(q) => match self.tracks_by_any_lead(q, paths, monitor)? {
-                Ok(tracks) => rungs.push(self.after(&groups.concat(), q.as_slice().into(), tracks)),
-                Err(dead) => failed = Some(dead),
-            },
-            JointGoal::Pose(pose) => {
-                let candidates = match self.configurations(tip, pose, before[0].end(), monitor)? {
-                    Ok(candidates) => candidates,
-                    Err(why) => return Ok(Err(Dead::Goal(why))),
-                };
-                let enough = if tip.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
-                for candidate in candidates.iter().take(MOST_FOLLOWED) {
-                    if tip.is_redundant() && rungs.len() >= enough {
-                        break;
-                    }
-                    for group in &groups {
-                        match self.placed(tip, candidate, paths, group) {
-                            Ok(more) => rungs.extend(more),
-                            Err(dead) => failed = Some(farther(failed, dead)),
-                        }
-                    }
-                }
-                for candidate in candidates.iter().take(MOST_LED) {
-                    if !tip.is_redundant() || !rungs.is_empty() {
-                        break;
-                    }
-                    let q = self.near(tip, candidate, &groups[0]);
-                    match self.tracks_by_any_lead(&q, paths, monitor)? {
-                        Ok(tracks) => rungs.push(self.after(&groups[0], q, tracks)),
-                        Err(dead) => failed = Some(farther(failed, dead)),
-                    }
+        let enough = if tip.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
+        for candidate in candidates.iter().take(MOST_FOLLOWED) {
+            if tip.is_redundant() && rungs.len() >= enough {
+                break;
+            }
+            for group in &groups {
+                match self.placed(tip, candidate, paths, group) {
+                    Ok(more) => rungs.extend(more),
+                    Err(dead) => failed = Some(farther(failed, dead)),
                 }
             }
         }
-        if rungs.is_empty() {
-            let none = || Dead::Goal("the arm has no configuration there".into());
-            return Ok(Err(failed.unwrap_or_else(none)));
+        for candidate in candidates.iter().take(MOST_LED) {
+            if !tip.is_redundant() || !rungs.is_empty() {
+                break;
+            }
+            let q = self.near(tip, candidate, &groups[0]);
+            match self.tracks_by_any_lead(&q, paths, monitor)? {
+                Ok(tracks) => rungs.push(self.after(&groups[0], q, tracks)),
+                Err(dead) => failed = Some(farther(failed, dead)),
+            }
         }
-        rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-        rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
-        rungs.truncate(MOST_RUNGS * self.tips.len());
-        Ok(Ok(rungs))
+        let none = || Dead::Goal("the arm has no configuration there".into());
+        Ok(if rungs.is_empty() { Err(failed.unwrap_or_else(none)) } else { Ok(rungs) })
     }
 
     /// Configurations at a pose, those nearest to `reference` first; why there are none.
@@ -481,42 +407,5 @@ impl<'a> Ladder<'a> {
 
     fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
         self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied())
-    }
-}
-
-/// A rung of the block before, by its index.
-type Before<'r> = (usize, &'r Rung);
-
-/// The rungs of the block before, by where they leave the joints that do not move this tip alone; the quickest of each come first.
-fn groups<'r>(tip: &MovingTip<'_>, before: &'r [Rung]) -> Vec<Vec<Before<'r>>> {
-    let mut groups: Vec<Vec<Before<'r>>> = vec![];
-    for rung in before.iter().enumerate() {
-        let is_like = |group: &&mut Vec<Before<'_>>| {
-            let pairs = group[0].1.end().iter().zip(rung.1.end());
-            pairs.enumerate().all(|(joint, (one, other))| tip.is_moved_by(joint) || (one - other).abs() < SAME)
-        };
-        match groups.iter_mut().find(is_like) {
-            Some(group) => group.push(rung),
-            None => groups.push(vec![rung]),
-        }
-    }
-    groups
-}
-
-/// Smallest and largest value of a joint along tracks that begin at `q`.
-fn range(q: &[f64], tracks: &[Track], joint: usize) -> [f64; 2] {
-    let rows = tracks.iter().flat_map(|track| track.rows.chunks_exact(q.len()));
-    rows.map(|row| row[joint]).fold([q[joint]; 2], |[low, high], value| [low.min(value), high.max(value)])
-}
-
-/// Of two reasons, the one that comes later on the way.
-fn farther(known: Option<Dead>, found: Dead) -> Dead {
-    let place = |dead: &Dead| match dead {
-        Dead::Goal(_) => (0, 0.0),
-        Dead::Path { path, at, .. } => (*path + 1, *at),
-    };
-    match known {
-        Some(known) if place(&known) >= place(&found) => known,
-        _ => found,
     }
 }

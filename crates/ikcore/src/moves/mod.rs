@@ -10,6 +10,7 @@
 //! | `outline` | a program as steps from rest to rest |
 //! | `follower` | joint positions along a path, by Newton's method and splines |
 //! | `move_configurations` | configurations in which the tip meets a pose |
+//! | `ladder_block`, `rung` | blocks of a program, and configurations at their starts |
 //! | `ladder`, `climber` | configurations for the whole program, and words for where there are none |
 //! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
 //! | `timing` | the fastest motion at the speed asked for |
@@ -25,6 +26,7 @@ mod corner;
 mod follower;
 mod joint_corner;
 mod ladder;
+mod ladder_block;
 mod leg;
 mod move_configurations;
 mod move_task;
@@ -36,6 +38,7 @@ mod program;
 mod program_planner;
 mod report;
 mod run;
+mod rung;
 mod timing;
 mod tool_path;
 

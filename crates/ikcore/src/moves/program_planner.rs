@@ -3,7 +3,8 @@
 use super::around::MoveSurroundings;
 use super::assembly::Assembly;
 use super::climber::Climber;
-use super::ladder::{Ladder, blocks};
+use super::ladder::Ladder;
+use super::ladder_block::blocks;
 use super::moves_options::MovesOptions;
 use super::moving_tip::MovingTip;
 use super::outline::outline;

@@ -3,6 +3,7 @@
 use ikcore::planning::{JointGoal, Move, MoveKind};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::convert::{array, copied, point, pose_array, rigid, rigid_rows, shape_text, summary};
 use crate::error::{invalid, raise};
@@ -81,6 +82,13 @@ fn place(position: &[f64; 3]) -> String {
     list_text(position)
 }
 
+/// Refuses a dict of poses by tip, as other calls take them.
+fn of_one_tip<'a, 'py>(what: &str, value: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyAny>> {
+    let Ok(dict) = value.cast::<PyDict>() else { return Ok(value) };
+    let first = dict.keys().iter().next().and_then(|key| key.extract::<String>().ok()).unwrap_or_else(|| "left".into());
+    Err(invalid(format!("{what}: a move leads one tip, got a dict: give its pose, and its name as tip='{first}'")))
+}
+
 /// Makes a move, which is checked as far as it can be without a robot.
 fn made<T: pyo3::PyClass<BaseType = PyMove>>(
     kind: MoveKind,
@@ -116,7 +124,7 @@ impl PyJoints {
         #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let numbers = array("q_or_pose", q_or_pose)?;
+        let numbers = array("q_or_pose", of_one_tip("q_or_pose", q_or_pose)?)?;
         let goal = match numbers.shape() {
             [_] => JointGoal::Configuration(numbers.as_slice()?.to_vec()),
             [4, 4] => JointGoal::Pose(rigid_rows("q_or_pose", numbers.as_slice()?)?),
@@ -174,7 +182,7 @@ impl PyLine {
         #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        made(MoveKind::Line { pose: rigid("pose", pose)?, speed }, blend, [tip, name], Self)
+        made(MoveKind::Line { pose: rigid("pose", of_one_tip("pose", pose)?)?, speed }, blend, [tip, name], Self)
     }
 
     /// Pose of the tip at the end (4, 4).
@@ -229,7 +237,12 @@ impl PyArc {
             [4, 4] => rigid("via", via)?.translation.vector.into(),
             _ => point("via", via)?,
         };
-        made(MoveKind::Arc { via, pose: rigid("pose", pose)?, angle, speed }, blend, [tip, name], Self)
+        made(
+            MoveKind::Arc { via, pose: rigid("pose", of_one_tip("pose", pose)?)?, angle, speed },
+            blend,
+            [tip, name],
+            Self,
+        )
     }
 
     /// Point that the arc passes through (3,) (m).
