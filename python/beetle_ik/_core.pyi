@@ -4211,6 +4211,9 @@ class Move:
     def blend(self) -> float:
         """Radius about the end of the move (m) inside which the motion may round the corner to the next move; 0: it stops there."""
     @property
+    def tip(self) -> str | None:
+        """The tip that the move leads, of a robot with several, or None."""
+    @property
     def name(self) -> str | None:
         """Name in messages and reports, or None."""
 
@@ -4221,13 +4224,16 @@ class Joints(Move):
     Args:
         q_or_pose: joint positions (n,) (rad, m), or a pose (4, 4) of the tip, whose configuration the planner chooses.
         blend: radius (m) about the end inside which the motion may round the corner to the next move; 0: it stops there.
+        tip: name of the tip that is led to a pose, of a robot with several; joints that move another tip too stay where they are.
         name: name in messages and reports.
 
     Raises:
-        InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero.
+        InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero; a tip with joint positions.
     """
 
-    def __new__(cls, q_or_pose: ArrayLike, *, blend: float = 0.0, name: str | None = None) -> Joints: ...
+    def __new__(
+        cls, q_or_pose: ArrayLike, *, blend: float = 0.0, tip: str | None = None, name: str | None = None
+    ) -> Joints: ...
     @property
     def q_or_pose(self) -> _Array:
         """Joint positions at the end (n,), or the pose of the tip (4, 4)."""
@@ -4242,6 +4248,7 @@ class Line(Move):
         speed: speed of the tip (m/s), kept between the blends wherever the limits allow; a turn on the spot counts 0.1 m for
             each radian. None: as fast as the limits allow.
         blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
+        tip: name of the tip, of a robot with several; joints that move another tip too stay where they are.
         name: name in messages and reports.
 
     Raises:
@@ -4249,7 +4256,13 @@ class Line(Move):
     """
 
     def __new__(
-        cls, pose: ArrayLike, *, speed: float | None = None, blend: float = 0.0, name: str | None = None
+        cls,
+        pose: ArrayLike,
+        *,
+        speed: float | None = None,
+        blend: float = 0.0,
+        tip: str | None = None,
+        name: str | None = None,
     ) -> Line: ...
     @property
     def pose(self) -> _Array:
@@ -4270,6 +4283,7 @@ class Arc(Move):
         blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
         angle: angle (rad) after which the arc ends, on the circle through its start, `via` and the position of `pose`, with
             the orientation of `pose`; 2 pi is a full circle. None: it ends at `pose`.
+        tip: name of the tip, of a robot with several; joints that move another tip too stay where they are.
         name: name in messages and reports.
 
     Raises:
@@ -4285,6 +4299,7 @@ class Arc(Move):
         speed: float | None = None,
         blend: float = 0.0,
         angle: float | None = None,
+        tip: str | None = None,
         name: str | None = None,
     ) -> Arc: ...
     @property
@@ -4388,7 +4403,7 @@ def plan_moves(
     moves: Iterable[Move],
     *,
     start_q: ArrayLike,
-    task: Task | None = None,
+    task: _Tasks = None,
     limits: Limits | None = None,
     obstacles: Iterable[Obstacle] | None = None,
     margin: float | None = None,
@@ -4408,12 +4423,13 @@ def plan_moves(
     certified between samples too.
 
     Args:
-        robot: the arm.
+        robot: the arm, or a robot with several tips, of which each move to a pose names one. That tip is led by the joints that move
+            no other one, so that all others stay where they are.
         moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
         start_q: joint positions (n,) at the start.
         task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
             an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
-            arcs whatever their tolerance. None: whole poses.
+            arcs whatever their tolerance. None: whole poses. For a robot with several tips one task for all of them, or a dict by tip.
         limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         obstacles: a `Scene` or a list of obstacles to keep clear of.
         margin: least distance from obstacles and between links (m); None: 1 mm.
@@ -4430,7 +4446,9 @@ def plan_moves(
         InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
             arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
             collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
-            bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to.
+            bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to; a
+            move that names no tip of several, or one that no joint moves alone, and a blend from one tip to another.
+        UnknownNameError: a tip that the robot has not.
         LimitError: limits that contradict each other; a start or joint positions outside them.
         UnsupportedLimit: limits that vary in time, or no acceleration limits.
 

@@ -192,6 +192,10 @@ SPOILED = {
         "motion = bik.Trajectory(motion.time, motion.coefficients + 10.0 * np.eye(1, motion.coefficients.shape[2]))",
         "a joint is outside its limits",
     ),
+    "programs_of_tips": (
+        "reports = [Changed(report, start=0.0, end=motion.duration) for report in reports]",
+        "a joint of the other tip moves",
+    ),
     "looser_paths": (
         "plans += [(False, inf, '')]",
         "no plan with a wider tolerance",

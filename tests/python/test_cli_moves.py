@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from pair_of_pandas import pair_of_pandas
 from typer.testing import CliRunner, Result
 
+import beetle_ik as bik
 from beetle_ik.cli.app import app
 
 HOME = [0.0, -1.5, 1.8, -1.9, -1.57, 0.0]
@@ -52,6 +55,28 @@ def test_the_task_of_a_file_leaves_the_spin_free(tmp_path: Path) -> None:
     assert free["moves"][-1]["end"] < 0.9 * whole["moves"][-1]["end"]
 
 
+def test_moves_of_two_tips_name_them(tmp_path: Path) -> None:
+    urdf, program = tmp_path / "pair.urdf", tmp_path / "program.json"
+    urdf.write_text(pair_of_pandas())
+    pair = bik.Robot.from_urdf(urdf, tip=["left_tool", "right_tool"])
+    start = np.r_[0.2, 0.0, np.tile([0.0, -0.6, 0.0, -2.2, 0.0, 1.8, 0.7], 2)]
+    lowered = [[*(pose[:3, 3] - [0.0, 0.0, 0.1]), 0.0, 0.0, 0.0] for pose in pair.fk(start)]
+    moves = [{"move": "line", "to": to, "tip": tip} for to, tip in zip(lowered, pair.tips, strict=True)]
+    position = {"kind": "position"}
+    program.write_text(json.dumps({"moves": moves, "task": {"left_tool": position, "right_tool": position}}))
+    q = "--start-q=" + ",".join(map(str, start))
+    given = ["plan", "moves", str(program), "--urdf", str(urdf), "--tip", "left_tool", "--tip", "right_tool", q]
+    done = CliRunner().invoke(app, [*given, "--acceleration-limit", "5", "--json", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    with np.load(tmp_path / "out" / "trajectory.npz") as saved:
+        _, q, _, _ = bik.Trajectory(saved["time"], saved["coefficients"]).sample(0.01)
+    assert np.abs(pair.fk(q[-1])[:, :3, 3] - np.array(lowered)[:, :3]).max() < 1e-5
+    middle = pair.fk(q[len(q) // 4])[:, :3, 3]
+    assert (
+        np.abs(middle[1] - pair.fk(start)[1, :3, 3]).max() < 1e-9 < np.abs(middle[0] - pair.fk(start)[0, :3, 3]).max()
+    )
+
+
 WRONG: list[tuple[Any, str]] = [
     (3, "expected a list of moves, got int"),
     ({}, "a program needs 'moves', a list; it may have a 'task'"),
@@ -65,6 +90,14 @@ WRONG: list[tuple[Any, str]] = [
     (
         {"moves": [], "task": {"kind": "pointing", "tolerance": [0.1]}},
         "task: tolerance of task Pointing: expected 4 entries (x, y, z and the angle), got 1",
+    ),
+    (
+        {"moves": [], "task": {"left": {"kind": "spin"}}},
+        "task of 'left': 'kind' must be one of pose, position, pointing, got 'spin'",
+    ),
+    (
+        [{"move": "line", "to": [0.4, 0.0, 0.3, 0.0, 0.0, 0.0], "tip": 3}],
+        "move 0: 'tip' must be a text, got 3",
     ),
     ([3], "move 0: expected an object with the key 'move', got 3"),
     ([{"move": "jump"}], "move 0: 'move' must be one of joints, line, arc, wait, got 'jump'"),

@@ -108,6 +108,11 @@ SOLVERS = (
             "angles",
         ),
         (
+            lambda: bik.moves.Line({"left": np.eye(4), "right": np.eye(4)}),  # type: ignore[arg-type]
+            bik.InvalidInputError,
+            "pose: a move leads one tip, got a dict: give its pose, and its name as tip='left'",
+        ),
+        (
             lambda: bik.plan_point_to_point(PANDA, start_q=READY, end_q=READY),
             bik.InvalidInputError,
             "trajectory: start and end are the same configuration: the arm is there already, nothing is to be planned",

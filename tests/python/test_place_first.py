@@ -16,6 +16,16 @@ GIVEN_UP = bik.Status.ROTATION_GIVEN_UP
 QUARTERS = np.array([0.0, 0.5, 1.0, 2.0, -1.0]) * np.pi / 2
 
 
+def of_joints(joints: list[tuple[str, str, str, str, str]]) -> bik.Robot:
+    """An arm of these joints: kind, place and turn seen from the one before, axis, and range."""
+    text = "".join(
+        f"<link name='l{i + 1}'/><joint name='j{i}' type='{kind}'><parent link='l{i}'/><child link='l{i + 1}'/>"
+        f"<origin xyz='{xyz}' rpy='{rpy}'/><axis xyz='{axis}'/><limit {limit} velocity='1' effort='1'/></joint>"
+        for i, (kind, xyz, rpy, axis, limit) in enumerate(joints)
+    )
+    return bik.Robot.from_urdf(f"<robot name='arm'><link name='l0'/>{text}</robot>")
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_the_place_is_met_and_the_turn_least(name: str) -> None:
     robot, random = ARMS[name], np.random.default_rng(1)
@@ -50,20 +60,90 @@ def test_a_branch_between_two_limits_is_found() -> None:
         assert found.rotation_error <= np.linalg.norm(turn) + 1e-3, (q, lower, upper)
 
 
+def test_a_branch_beside_the_end_of_another_is_found() -> None:
+    """The best branch keeps the fourth joint within 0.03 rad, and one of its ends is where another branch ends too."""
+    robot = of_joints(
+        [
+            ("continuous", "0 0 0", "0 -2 0", "1 0 0", ""),
+            ("revolute", "0 0.24 -0.09", "-2.59 -1.29 -1.48", "0.494 -0.26 0.89", "lower='1' upper='2.31'"),
+            ("revolute", "-0.2589 0.091549 0.397697", "0 -1.5708 0", "1 0 0", "lower='-2.48442' upper='1.1439'"),
+            (
+                "revolute",
+                "-0.209961 -0.31448 -0.139364",
+                "0.351479 -0.707416 -1.14696",
+                "1.59882 -0.117097 -0.667275",
+                "lower='-2.05235' upper='0.631979'",
+            ),
+            (
+                "continuous",
+                "-0.2659 -0.115808 -0.342359",
+                "-2.40308 -1.93872 0.135844",
+                "0.123568 0.829574 0.464269",
+                "",
+            ),
+        ]
+    )
+    turn = np.array([-0.2947, 0.6847, 0.6605])
+    found = bik.solve(robot, turned(robot.fk([-1.897, 2.2139, -0.0455, 0.246, -2.5886]), turn))
+    assert found.position_error < 1e-6, found.message
+    assert found.rotation_error <= np.linalg.norm(turn) + 1e-3
+
+
+def test_few_poses_of_random_arms_are_missed() -> None:
+    """Optima between two values of the scan: every seed of it is descended from."""
+    random, missed = np.random.default_rng(2), 0
+    for _ in range(40):
+        joints = [
+            (
+                "revolute",
+                " ".join(map(str, random.uniform(-0.4, 0.4, 3))),
+                " ".join(map(str, random.uniform(-3.1, 3.1, 3))),
+                " ".join(map(str, random.normal(size=3))),
+                f"lower='{random.uniform(-2.8, -0.3)}' upper='{random.uniform(0.3, 2.8)}'",
+            )
+            for _ in range(5)
+        ]
+        robot = of_joints(joints)
+        for q in robot.random_configurations(50, seed=int(random.integers(1 << 30))):
+            turn = random.normal(0.0, 0.03, 3)
+            found = bik.solve(robot, turned(robot.fk(q), turn))
+            assert found.position_error < 1e-6, found.message
+            missed += found.rotation_error > np.linalg.norm(turn) + 1e-3
+    assert missed <= 1
+
+
+def test_a_place_in_a_corner_of_the_limits_is_found() -> None:
+    """An arm with a sliding joint, which searches: four of its joints are at their limits there."""
+    robot = of_joints(
+        [
+            ("revolute", "-0.288 0.192 0.205", "0 -1.5708 1.5708", "0 1 0", "lower='-1.02' upper='2.63'"),
+            (
+                "revolute",
+                "0.386 0.0536 -0.0585",
+                "2.342 -2.895 1.159",
+                "1.504 -0.205 0.454",
+                "lower='-1.12' upper='1.08'",
+            ),
+            ("revolute", "-0.286 0.394 0.235", "2.72 0.2 1.323", "-0.466 -0.245 -0.057", "lower='-1.64' upper='1.09'"),
+            ("prismatic", "0.367 -0.309 0.256", "-1.5708 1.5708 0", "0 1 0", "lower='-0.11' upper='0.165'"),
+            ("revolute", "-0.173 -0.29 -0.08", "0 1.5708 1.5708", "1 0 0", "lower='-2.65' upper='1.47'"),
+        ]
+    )
+    target = turned(robot.fk([2.63, 1.08, -1.64, 0.165, -1.928]), np.array([0.7263, 0.8708, 2.0515]))
+    for seed in range(8):
+        found = bik.solve(robot, target, seed=seed)
+        assert found.position_error < 1e-6, (seed, found.message)
+
+
 def test_three_joints_carry_a_tool_to_its_place() -> None:
     """An arm whose tip is on its last axis, so that the last joint moves the tool alone, and not far."""
-    joint = (
-        "<link name='{child}'/><joint name='{child}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
-        "<origin xyz='{xyz}' rpy='{rpy}'/><axis xyz='{axis}'/><limit {range} velocity='1' effort='1'/></joint>"
+    arm = of_joints(
+        [
+            ("continuous", "0.02 0.27 -0.33", "1.57 -1.57 0", "1 0 0", ""),
+            ("revolute", "0.3 -0.26 -0.05", "-1.57 1.57 -1.57", "0 1 0", "lower='-2.67' upper='2.22'"),
+            ("revolute", "0.28 0.06 -0.06", "-2.46 1.03 -0.01", "0.3 -1.58 -0.12", "lower='-0.3' upper='0.1'"),
+        ]
     )
-    of_arm = [
-        ("base", "a", "continuous", "0.02 0.27 -0.33", "1.57 -1.57 0", "1 0 0", ""),
-        ("a", "b", "revolute", "0.3 -0.26 -0.05", "-1.57 1.57 -1.57", "0 1 0", "lower='-2.67' upper='2.22'"),
-        ("b", "c", "revolute", "0.28 0.06 -0.06", "-2.46 1.03 -0.01", "0.3 -1.58 -0.12", "lower='-0.3' upper='0.1'"),
-    ]
-    names = ("parent", "child", "kind", "xyz", "rpy", "axis", "range")
-    text = "".join(joint.format(**dict(zip(names, values, strict=True))) for values in of_arm)
-    arm = bik.Robot.from_urdf(f"<robot name='three'><link name='base'/>{text}</robot>")
     robot = arm.with_tool(bik.pose([0.0, 0.05, -0.01]))
     for q in robot.random_configurations(300, seed=6):
         found = bik.solve(robot, turned(robot.fk(q), np.array([0.5, 0.0, -0.4])))

@@ -110,6 +110,7 @@ mod timing {
 mod moves {
     mod at_limits;
     mod programs;
+    mod several_tips;
     mod tasks;
     mod torque_limits;
 }

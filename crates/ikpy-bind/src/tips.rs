@@ -148,6 +148,22 @@ impl TaskArguments<'_, '_> {
     }
 }
 
+/// Reads the `task` of a call that plans for several tips: one for all of them, or a dict by tip.
+pub fn read_tip_tasks(robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult<(Option<Task>, Vec<TipTask>)> {
+    let Some(dict) = value.and_then(|value| value.cast::<PyDict>().ok()) else {
+        return Ok((read_task(value)?, vec![]));
+    };
+    let tasks = Each::read("task", &robot.core, dict, None, |task| read_task(Some(task)))?;
+    let of_tip = |(key, task): &(TipKey, Option<Task>)| match subject(&robot.core, key)? {
+        Subject::Tip(tip) => Ok((tip, *task)),
+        _ => Err(invalid(format!("task of {}: moves lead single tips, {}", in_words(key), tips_in_words(&robot.core)))),
+    };
+    Ok((None, tasks.keys.iter().map(of_tip).collect::<PyResult<_>>()?))
+}
+
+/// The number of a tip, and its task.
+type TipTask = (usize, Option<Task>);
+
 /// Task and tolerances by tip.
 #[derive(Debug)]
 pub struct TipSettings {

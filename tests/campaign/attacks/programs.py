@@ -64,8 +64,11 @@ def beyond(task: str | None, tips: Array, due: Array) -> Array:
     return np.linalg.norm(np.maximum(np.abs(vectors) - (TOLERANCE if task == "band" else 0.0), 0.0), axis=1)
 
 
-def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Array | None:
-    """Joint positions at the end of a line from q, by small Newton steps; None where one is large or near a limit."""
+def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any], held: int = 0) -> Array | None:
+    """Joint positions at the end of a line from q, by small Newton steps; None where one is large or near a limit.
+
+    The first `held` joints stay.
+    """
     lower, upper = arms.bounds(joints)
     start = arms.kinematics(joints, q[None])[0][0]
     steps = int(np.ceil(max(np.linalg.norm(move["way"]) / 0.004, move["turn"] / 0.02, 1.0)))
@@ -81,13 +84,15 @@ def followed(joints: list[dict[str, Any]], q: Array, move: dict[str, Any]) -> Ar
             ]
             if np.linalg.norm(missing) < MET:
                 break
-            q = q + np.linalg.pinv(jacobians[0], rcond=1e-6) @ missing
+            jacobian = jacobians[0]
+            jacobian[:, :held] = 0.0
+            q = q + np.linalg.pinv(jacobian, rcond=1e-6) @ missing
         moved = np.abs(q - before).max()
         if (
             np.linalg.norm(missing) > MET
             or moved > LARGEST_STEP
-            or (q < lower + ROOM).any()
-            or (q > upper - ROOM).any()
+            or (q < lower + ROOM)[held:].any()
+            or (q > upper - ROOM)[held:].any()
         ):
             return None
     return q

@@ -48,6 +48,15 @@ impl Limits {
         }
     }
 
+    /// These limits with other positions (rad, m).
+    ///
+    /// # Errors
+    /// As [`replace`](Self::replace).
+    pub(crate) fn with_positions(self, lower: &[f64], upper: &[f64]) -> Result<Self> {
+        let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
+        self.replace(Field::Lower, constant(lower))?.replace(Field::Upper, constant(upper))
+    }
+
     /// The robot's own limits, with its maker's limits on acceleration and jerk where these are known.
     pub fn rated(robot: &Robot) -> Self {
         let of = |value: fn(&Joint) -> f64| {

@@ -1,20 +1,19 @@
 //! The motion of a whole program, step by step.
 
 use super::around::{ADVICE_HOLD, MoveSurroundings};
-use super::ladder::Rung;
-use super::move_task::MoveTask;
 use super::moves_options::MovesOptions;
+use super::moving_tip::{MovingTip, led_by};
 use super::outline::{Stage, StageKind};
 use super::program::Move;
 use super::report::{bounds_on, speed_on, tip_speed};
 use super::run::{Run, RunPart};
+use super::rung::Rung;
 use super::timing::{PathTime, path_times, time_at, timed, times_between};
 use crate::error::{Error, Result};
 use crate::free_path;
 use crate::math::vector::largest_difference;
 use crate::message::Message;
 use crate::plan::{EndTurns, Endpoint, MoveCourse, MoveReport, PointToPointOptions, SpeedBound};
-use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::timing::JointPath;
 use crate::trajectory::{Trajectory, polynomial};
@@ -29,9 +28,7 @@ const NOTHING: f64 = 1e-9;
 /// The motion so far, and its moves.
 pub(super) struct Assembly<'a> {
     around: MoveSurroundings<'a>,
-    /// The robot with the tool of the task, and the task.
-    robot: &'a Robot,
-    task: MoveTask,
+    tips: &'a [MovingTip<'a>],
     moves: &'a [Move],
     options: &'a MovesOptions,
     /// Configuration at the end.
@@ -43,12 +40,12 @@ pub(super) struct Assembly<'a> {
 impl<'a> Assembly<'a> {
     pub fn new(
         around: MoveSurroundings<'a>,
-        (robot, task): (&'a Robot, MoveTask),
+        tips: &'a [MovingTip<'a>],
         moves: &'a [Move],
         options: &'a MovesOptions,
         start: &[f64],
     ) -> Self {
-        Self { around, robot, task, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
+        Self { around, tips, moves, options, q: start.to_vec(), motion: None, reports: vec![] }
     }
 
     /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
@@ -80,11 +77,13 @@ impl<'a> Assembly<'a> {
                     }
                     let path =
                         JointPath::polyline(self.around.limits.joint_names(), &[&from[..], &rung.q].concat(), 0.0)?;
-                    parts.push(RunPart { index: *index, tool_path: None, path });
+                    let tips = led_by(self.tips, &self.moves[*index]);
+                    parts.push(RunPart { index: *index, tips, tool_path: None, path });
                 }
                 StageKind::Along(tool_path) => {
                     let Some(path) = paths.next() else { continue };
-                    parts.push(RunPart { index: tool_path.pieces[0].index, tool_path: Some(tool_path), path });
+                    let (index, tips) = (tool_path.pieces[0].index, &self.tips[tool_path.tip..=tool_path.tip]);
+                    parts.push(RunPart { index, tips, tool_path: Some(tool_path), path });
                 }
             }
             if *blend > 0.0 {
@@ -99,7 +98,7 @@ impl<'a> Assembly<'a> {
     /// Adds parts with rounded corners between them where that is possible and clear, else with stops.
     fn go(&mut self, parts: Vec<RunPart<'a>>, radii: Vec<f64>, monitor: &mut dyn Monitor) -> Result<()> {
         if !radii.is_empty()
-            && let Some(run) = Run::rounded(self.robot, &self.task, self.around.limits, &parts, &radii)?
+            && let Some(run) = Run::rounded(self.tips, self.around.limits, &parts, &radii)?
         {
             let motion = self.timed_where_held(&run.path)?;
             let is_better = |motion: &Trajectory| match self.around.is_free() {
@@ -194,7 +193,7 @@ impl<'a> Assembly<'a> {
                 // Corners may take all of it.
                 let between_corners = [window.begin, window.end()].map(|s| time_at(&times, s));
                 let has_way = window.to > window.from;
-                let speed = has_way.then(|| tip_speed(self.robot, &motion, between_corners)).transpose()?;
+                let speed = has_way.then(|| tip_speed(part.tips, &motion, between_corners)).transpose()?;
                 self.report(part.index, [start, end_of_part], speed, vec![]);
                 start = end_of_part;
                 continue;
@@ -259,11 +258,17 @@ impl<'a> Assembly<'a> {
     /// Adds a motion to the end of a joint move that keeps clear of everything, and keeps what is to be kept.
     fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
         let MovesOptions { surroundings, keeps, limits, stop, seed, .. } = self.options;
+        let limits = match part.tips {
+            [tip] if self.tips.len() > 1 => {
+                Some(tip.limits_with_others_at(&self.q, limits.as_ref(), self.around.limits)?)
+            }
+            _ => limits.clone(),
+        };
         let options = PointToPointOptions {
             end_turns: EndTurns::AsGiven,
             surroundings: surroundings.clone(),
             keeps: keeps.clone(),
-            limits: limits.clone(),
+            limits,
             stop: *stop,
             seed: *seed,
             ..PointToPointOptions::default()
@@ -280,7 +285,7 @@ impl<'a> Assembly<'a> {
             return Err(self.not_found(part.index, problem));
         }
         let (start, duration) = (self.now(), plan.trajectory.duration());
-        let speed = tip_speed(self.robot, &plan.trajectory, [0.0, duration])?;
+        let speed = tip_speed(part.tips, &plan.trajectory, [0.0, duration])?;
         self.push(plan.trajectory)?;
         self.report(part.index, [start, self.now()], Some(speed), vec![]);
         Ok(())

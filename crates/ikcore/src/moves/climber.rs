@@ -1,13 +1,16 @@
 //! The search for the configurations of a program, and words for what it does not find.
 
 use super::follower::{Lost, Stray};
-use super::ladder::{Cause, Dead, Ladder, LadderBlock, Rung};
+use super::ladder::Ladder;
+use super::ladder_block::LadderBlock;
+use super::moving_tip::MovingTip;
 use super::program::{JointGoal, Move};
+use super::rung::{Cause, Dead, Rung};
 use super::tool_path::ToolPath;
 use crate::error::{Error, Result};
 use crate::ik::{AllOptions, SolveOptions, solve_all};
+use crate::math::Pose;
 use crate::message::{Message, message};
-use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
@@ -17,13 +20,17 @@ use crate::wording::number;
 /// found.
 const BEYOND: f64 = 1e-3;
 
+/// What is said of robots with several tips that share joints.
+const SHARED: &str = "; joints that move another tip too stay where they are";
+
 /// What the search for configurations is about.
 pub(super) struct Climber<'a> {
-    pub robot: &'a Robot,
+    pub tips: &'a [MovingTip<'a>],
     pub limits: &'a ConstantLimits,
     pub moves: &'a [Move],
     pub blocks: &'a [LadderBlock<'a>],
-    pub each: SolveOptions,
+    /// Options of searches for the task of each tip.
+    pub searches: Vec<SolveOptions>,
     /// Whether errors say how far the reach goes.
     pub explains: bool,
 }
@@ -39,7 +46,7 @@ impl Climber<'_> {
         let mut paths = vec![];
         for (i, (block, rung)) in self.blocks.iter().zip(rungs).enumerate() {
             for (k, (path, track)) in block.paths.iter().zip(&rung.tracks).enumerate() {
-                let (at, cause) = match ladder.follower().refined(path, track.clone(), self.limits)? {
+                let (at, cause) = match ladder.follower(path.tip).refined(path, track.clone(), self.limits)? {
                     Ok(joints) => {
                         paths.push(joints);
                         continue;
@@ -54,8 +61,22 @@ impl Climber<'_> {
         Ok(paths)
     }
 
-    /// The error for a block without a configuration.
+    /// The error for a block without a configuration; with several tips it says which joints stay.
     pub fn no_way(&self, block: usize, dead: Dead, monitor: &mut dyn Monitor) -> Result<Error> {
+        let is_shared = |joint: usize| self.tips.iter().all(|tip| !tip.is_moved_by(joint));
+        let note = (0..self.limits.dof()).any(is_shared).then_some(SHARED);
+        let noted = |problem: Message| match note {
+            Some(note) => message![problem, note],
+            None => problem,
+        };
+        Ok(match self.why_no_way(block, dead, monitor)? {
+            Error::Unreachable { what, problem } => Error::Unreachable { what, problem: noted(problem) },
+            Error::NotFound { what, problem } => Error::NotFound { what, problem: noted(problem) },
+            other => other,
+        })
+    }
+
+    fn why_no_way(&self, block: usize, dead: Dead, monitor: &mut dyn Monitor) -> Result<Error> {
         let (path, at, cause) = match dead {
             Dead::Goal(problem) => {
                 let index = self.blocks[block].goal.map_or(0, |(index, _)| index);
@@ -68,7 +89,7 @@ impl Climber<'_> {
         let no_solution = match &cause {
             Cause::Blocked(_) => None,
             _ if !self.explains => None,
-            _ => self.end_of_reach(path, at, monitor)?,
+            _ => self.end_of_reach(block, path, at, monitor)?,
         };
         let no_solution = no_solution.map(|(at, why)| message![format!("{} m along it, ", number(at)), why]);
         let along = number(along);
@@ -109,15 +130,23 @@ impl Climber<'_> {
 
     /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
     /// and it is not proven that its end has none.
-    fn end_of_reach(&self, path: &ToolPath, at: f64, monitor: &mut dyn Monitor) -> Result<Option<(f64, Message)>> {
+    fn end_of_reach(
+        &self,
+        block: usize,
+        path: &ToolPath,
+        at: f64,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<(f64, Message)>> {
+        let (tip, each, stem) = (&self.tips[path.tip], &self.searches[path.tip], self.blocks[block].stem);
         let (index, along) = path.place_on_move(at);
         let end = path.ends_of_moves().find(|(each, _)| *each == index).map_or(path.length(), |(_, end)| end);
         let mut solutions = |s: f64| {
-            let options = AllOptions { each: self.each.clone(), limit: Some(1), ..AllOptions::default() };
-            solve_all(self.robot, &Target::Pose(path.pose(s)), &options, monitor)
+            let options = AllOptions { each: each.clone(), limit: Some(1), ..AllOptions::default() };
+            let seen = tip.seen(&Pose::from(path.pose(s)), stem);
+            solve_all(tip.solved(), &Target::from(&seen), &options, monitor)
         };
         let lost = solutions((at + BEYOND).min(path.length()))?;
-        if self.each.task.is_some() {
+        if each.task.is_some() {
             // No closed form proves anything of a part of a pose.
             let problem = || "no configuration was found there that meets the task".into();
             return Ok(lost.solutions.is_empty().then(|| (along, problem())));

@@ -1,6 +1,6 @@
 //! Joint positions along a path of the tip, from configuration to configuration by Newton's method.
 
-use super::move_task::MoveTask;
+use super::moving_tip::MovingTip;
 use super::tool_path::ToolPath;
 use crate::along_path::{Borders, PathTarget};
 use crate::error::Result;
@@ -9,7 +9,6 @@ use crate::math::Frame;
 use crate::math::cubic_spline::SplineEnds;
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization, Point};
-use crate::robot::Robot;
 use crate::timing::{ConstantLimits, JointPath};
 
 /// Steps of Newton's method, and the squared error at which they end (m^2, rad^2).
@@ -101,6 +100,8 @@ impl Track {
 /// Where the self-motion of a redundant arm leads.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lead<'a> {
+    /// Number of the tip whose arm is led.
+    pub tip: usize,
     /// The configuration that the arm goes to, as near as its path allows.
     pub toward: &'a [f64],
     /// Length of the path (m) after which two thirds of the way are gone.
@@ -109,8 +110,7 @@ pub(super) struct Lead<'a> {
 
 /// Follows paths of the tip within a box.
 pub(super) struct Follower<'a> {
-    robot: &'a Robot,
-    task: MoveTask,
+    tip: &'a MovingTip<'a>,
     bounds: Bounds,
     linearization: Linearization,
     /// Evaluations of the kinematics so far.
@@ -118,8 +118,8 @@ pub(super) struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    pub fn new(robot: &'a Robot, task: MoveTask, bounds: Bounds) -> Self {
-        Self { robot, task, bounds, linearization: Linearization::default(), evaluations: 0 }
+    pub fn new(tip: &'a MovingTip<'a>, bounds: Bounds) -> Self {
+        Self { tip, bounds, linearization: Linearization::default(), evaluations: 0 }
     }
 
     /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
@@ -127,11 +127,12 @@ impl<'a> Follower<'a> {
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let widened = self.bounds_from(q);
         // A joint at its limit moves off it where the task leaves it the freedom: a motion along a limit swings beyond.
-        if !self.task.is_whole() && !self.bounds.contains(q) {
-            let inside = self.bounds.clone();
-            if let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside]) {
-                return Ok(track);
-            }
+        let inside = self.tip.with_others_at(q, self.bounds.clone());
+        if !self.tip.task.is_whole()
+            && !inside.contains(q)
+            && let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside])
+        {
+            return Ok(track);
         }
         self.follow_within(path, q, lead, [&widened, &widened])
     }
@@ -161,7 +162,7 @@ impl<'a> Follower<'a> {
 
     /// The box for a track that begins at `q`, which may be nearer to its limits than the box is.
     fn bounds_from(&self, q: &[f64]) -> Bounds {
-        self.bounds.clone().including(q)
+        self.tip.with_others_at(q, self.bounds.clone().including(q))
     }
 
     fn follow_piece(
@@ -207,21 +208,22 @@ impl<'a> Follower<'a> {
     /// Moves `q`, inside the box, to the nearest configuration that meets the task at `pose`. Returns whether there is one.
     pub fn meet(&mut self, pose: &Frame, q: &mut [f64]) -> bool {
         let bounds = self.bounds_from(q);
-        self.project(&self.task.target(pose), q, &bounds)
+        self.project(&self.tip.task.target(pose), q, &bounds)
     }
 
     /// What the tip has to meet at the length `s`.
     fn target(&self, path: &ToolPath, s: f64) -> PathTarget {
-        self.task.target(&path.pose(s))
+        self.tip.task.target(&path.pose(s))
     }
 
     /// Moves `q` to the nearest configuration that meets a target. Returns whether there is one.
     fn project(&mut self, target: &PathTarget, q: &mut [f64], bounds: &Bounds) -> bool {
-        let (robot, mut value, mut count) = (self.robot, f64::INFINITY, 0);
+        let (tip, mut value, mut count) = (self.tip, f64::INFINITY, 0);
         let mut borders = Borders::default();
         self.linearization.project(q, bounds, STEPS, |q, at| {
             let before = value;
-            value = target.linearize(robot, q, &mut borders, at);
+            let frame = tip.frame_and_jacobian(q, &mut at.first.columns);
+            value = target.linearize_tip(&frame, q.len(), &mut borders, at);
             count += 1;
             let is_stuck = value >= before && value <= AS_NEAR_AS_SOLVES;
             (!(value <= MET) && !is_stuck).then_some(DAMPING * value)
@@ -240,7 +242,7 @@ impl<'a> Follower<'a> {
         mut track: Track,
         limits: &ConstantLimits,
     ) -> Result<Result<JointPath, Stray>> {
-        let names: Vec<String> = self.robot.joints().iter().map(|joint| joint.name.clone()).collect();
+        let names = self.tip.joint_names();
         let mut coarse = vec![];
         if let Some(at) = track.rest() {
             return Ok(Err(Stray::Still { at }));
@@ -274,13 +276,13 @@ impl<'a> Follower<'a> {
     }
 
     fn is_coarse(&mut self, path: &ToolPath, joints: &JointPath, [from, to]: [f64; 2]) -> bool {
-        let mut q = Point::from_elem(0.0, self.robot.dof());
+        let mut q = Point::from_elem(0.0, self.tip.dof());
         let allowed = |most: f64| most.min((SLOPE_ACCURACY * (to - from)).max(1e-9));
         self.evaluations += LOOKS.len();
         LOOKS.iter().any(|look| {
             let s = from + look * (to - from);
             joints.position(s, &mut q);
-            let [distance, angle] = self.target(path, s).off(&self.robot.tip(&q));
+            let [distance, angle] = self.target(path, s).off(&self.tip.frame(&q));
             distance > allowed(ACCURACY[0]) || angle > ACCURACY[1]
         })
     }
@@ -296,7 +298,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Track, Stray> {
         let mut finer = Track { knots: vec![], rows: vec![] };
         let mut coarse = coarse.iter().peekable();
-        let mut q = Point::from_elem(0.0, self.robot.dof());
+        let mut q = Point::from_elem(0.0, self.tip.dof());
         let bounds = self.bounds_from(track.row(0));
         for (i, knot) in track.knots.iter().enumerate() {
             finer.push(*knot, track.row(i));

@@ -3,11 +3,11 @@
 //! Each joint follows a quintic Bezier curve that meets both paths with their first and second derivative. Its parameter is a quintic of
 //! the run's, which gives both paths their own rate.
 
+use super::moving_tip::MovingTip;
 use crate::math::so3::norm;
 use crate::math::vector::distance;
 use crate::math::vector3::sub;
 use crate::objective::Point;
-use crate::robot::Robot;
 use crate::timing::{ConstantLimits, JointPath};
 
 /// Length of the first and the last side of the control polygon, as a fraction of the rest of the path up to the corner.
@@ -37,26 +37,26 @@ pub(super) struct JointCorner {
 }
 
 impl JointCorner {
-    /// The corner from `before` to `after`, not earlier than `first` on the one nor later than `last` on the other, with the tip within
+    /// The corner from `before` to `after`, not earlier than `first` on the one nor later than `last` on the other, with all `tips` within
     /// `radius` (m). `None` where no curve that was tried is.
     pub fn between(
-        robot: &Robot,
+        tips: &[MovingTip<'_>],
         limits: &ConstantLimits,
         [before, after]: [&JointPath; 2],
         [first, last]: [f64; 2],
         radius: f64,
     ) -> Option<Self> {
         let [end, start] = [before.breaks()[before.pieces()], after.breaks()[0]];
-        let mut q = Point::from_elem(0.0, robot.dof());
+        let mut q = Point::from_elem(0.0, after.joints().len());
         after.position(start, &mut q);
-        let corner = robot.tip_position(&q);
+        let balls: Vec<Ball<'_>> = tips.iter().map(|tip| Ball { tip, center: tip.position(&q) }).collect();
         let mut ball = radius;
         for _ in 0..SHRINKINGS {
-            let left = crossing(robot, before, &corner, ball, [end, first]);
-            let entered = crossing(robot, after, &corner, ball, [start, last]);
+            let left = crossing(&balls, before, ball, [end, first]);
+            let entered = crossing(&balls, after, ball, [start, last]);
             if end - left > 0.0 && entered - start > 0.0 {
                 let found = Self::of([before, after], [left, entered], [end - left, entered - start]);
-                if found.is_within(robot, limits, &corner, radius) {
+                if balls.iter().all(|ball| found.is_within(ball, limits, radius)) {
                     return Some(found);
                 }
             }
@@ -97,16 +97,16 @@ impl JointCorner {
     }
 
     /// Whether the tip stays in the ball, between samples too, and the joints inside their limits.
-    fn is_within(&self, robot: &Robot, limits: &ConstantLimits, corner: &[f64; 3], radius: f64) -> bool {
-        let mut q = Point::from_elem(0.0, robot.dof());
+    fn is_within(&self, ball: &Ball<'_>, limits: &ConstantLimits, radius: f64) -> bool {
+        let mut q = Point::from_elem(0.0, self.controls.len());
         let (mut before, mut largest, mut step) = (None::<[f64; 3]>, 0.0_f64, 0.0_f64);
         for i in 0..=SAMPLES {
             self.position(i as f64 / SAMPLES as f64, &mut q);
             if !limits.contain(&q) {
                 return false;
             }
-            let tip = robot.tip_position(&q);
-            largest = largest.max(norm(&sub(&tip, corner)));
+            let tip = ball.tip.position(&q);
+            largest = largest.max(norm(&sub(&tip, &ball.center)));
             step = before.map_or(step, |before| step.max(distance(&tip, &before)));
             before = Some(tip);
         }
@@ -115,12 +115,18 @@ impl JointCorner {
     }
 }
 
-/// The parameter between `near`, at the corner, and `far`, up to which the tip stays within `radius` of the corner.
-fn crossing(robot: &Robot, path: &JointPath, corner: &[f64; 3], radius: f64, [near, far]: [f64; 2]) -> f64 {
-    let mut q = Point::from_elem(0.0, robot.dof());
+/// A ball about the place of a tip at a corner (m).
+struct Ball<'a> {
+    tip: &'a MovingTip<'a>,
+    center: [f64; 3],
+}
+
+/// The parameter between `near`, at the corner, and `far`, up to which all tips stay within `radius` of their centers.
+fn crossing(balls: &[Ball<'_>], path: &JointPath, radius: f64, [near, far]: [f64; 2]) -> f64 {
+    let mut q = Point::from_elem(0.0, path.joints().len());
     let mut is_inside = |fraction: f64| {
         path.position(near + fraction * (far - near), &mut q);
-        norm(&sub(&robot.tip_position(&q), corner)) <= radius
+        balls.iter().all(|Ball { tip, center }| norm(&sub(&tip.position(&q), center)) <= radius)
     };
     let Some(outside) = (1..=SAMPLES).map(|i| i as f64 / SAMPLES as f64).find(|fraction| !is_inside(*fraction)) else {
         return far;

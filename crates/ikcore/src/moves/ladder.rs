@@ -6,21 +6,22 @@
 
 use super::around::MoveSurroundings;
 use super::follower::{Follower, Lead, Lost, Track};
+use super::ladder_block::LadderBlock;
 use super::move_configurations::MoveConfigurations;
-use super::move_task::MoveTask;
-use super::outline::{Stage, StageKind};
-use super::program::{JointGoal, Move, MoveKind};
+use super::moving_tip::MovingTip;
+use super::program::JointGoal;
+use super::rung::{Before, Cause, Dead, Rung, SAME, farther, groups, range};
 use super::tool_path::ToolPath;
 use crate::error::Result;
-use crate::ik::{SolveOptions, bring_near};
+use crate::ik::SolveOptions;
 use crate::math::Pose;
 use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Point};
-use crate::robot::{Robot, limit_rounding};
+use crate::robot::limit_rounding;
 use crate::solver::Monitor;
 use crate::timing::ConstantLimits;
 
-/// Largest number of rungs of a step of the ladder; the quickest are kept.
+/// Largest number of rungs of a step of the ladder for each tip; the quickest are kept.
 const MOST_RUNGS: usize = 24;
 
 /// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
@@ -40,108 +41,39 @@ const LEAST_LENGTH: f64 = 0.01;
 /// Distance (rad, m) from limits within which the path of a redundant arm stays where it can: splines swing a little between knots.
 const INSET: f64 = 1e-3;
 
-/// Joint difference below which two configurations are one.
-const SAME: f64 = 1e-6;
-
-/// A block of a program.
-#[derive(Debug)]
-pub(super) struct LadderBlock<'a> {
-    /// The joint move at its start; `None` for what comes before the first joint move.
-    pub goal: Option<(usize, &'a JointGoal)>,
-    /// The paths of the tip after it.
-    pub paths: Vec<&'a ToolPath>,
-}
-
-/// Configuration at the start of a block, and the joint positions along its paths.
-#[derive(Debug, Clone)]
-pub(super) struct Rung {
-    pub q: Point,
-    pub tracks: Vec<Track>,
-    /// Estimate of the time up to the end of the block (s).
-    cost: f64,
-    /// The rung of the block before.
-    before: usize,
-}
-
-/// Why a block has no rung.
-#[derive(Debug)]
-pub(super) enum Dead {
-    /// The goal of the joint move has no configuration: why.
-    Goal(crate::message::Message),
-    /// A path is lost at this length.
-    Path { path: usize, at: f64, cause: Cause },
-}
-
-/// What ends the following of a path.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cause {
-    /// No configuration nearby continues it.
-    OutOfReach,
-    /// A joint would have to go to this value.
-    Limit { joint: usize, value: f64 },
-    /// Something is in the way, what is to be kept is broken, or a joint cannot hold the arm: which, with advice.
-    Blocked(String),
-}
-
-impl Rung {
-    fn end(&self) -> &[f64] {
-        self.tracks.last().map_or(&self.q, Track::end)
-    }
-}
-
-/// The blocks of a program.
-pub(super) fn blocks<'a>(stages: &'a [Stage], moves: &'a [Move]) -> Vec<LadderBlock<'a>> {
-    let mut blocks = vec![LadderBlock { goal: None, paths: vec![] }];
-    for Stage { kind, .. } in stages {
-        match kind {
-            StageKind::Joints(index) => {
-                if let MoveKind::Joints(goal) = &moves[*index].kind {
-                    blocks.push(LadderBlock { goal: Some((*index, goal)), paths: vec![] });
-                }
-            }
-            StageKind::Along(path) => {
-                if let Some(block) = blocks.last_mut() {
-                    block.paths.push(path);
-                }
-            }
-            StageKind::Rest(..) => {}
-        }
-    }
-    blocks
-}
-
 /// The search for the configurations of a program.
 pub(super) struct Ladder<'a> {
-    robot: &'a Robot,
     limits: &'a ConstantLimits,
     around: MoveSurroundings<'a>,
-    /// Whether what the tip has to meet leaves the arm a self-motion.
-    is_redundant: bool,
-    follower: Follower<'a>,
-    task: MoveTask,
-    each: SolveOptions,
+    tips: &'a [MovingTip<'a>],
+    /// One for each tip.
+    followers: Vec<Follower<'a>>,
+    /// Options of searches for each tip.
+    searches: &'a [SolveOptions],
     /// Evaluations of the kinematics so far.
     pub evaluations: usize,
 }
 
 impl<'a> Ladder<'a> {
-    pub fn new(around: MoveSurroundings<'a>, (robot, task): (&'a Robot, MoveTask), each: SolveOptions) -> Self {
+    pub fn new(around: MoveSurroundings<'a>, tips: &'a [MovingTip<'a>], searches: &'a [SolveOptions]) -> Self {
         let limits = around.limits;
-        let is_redundant = task.leaves_freedom(robot.dof());
-        let bounds = if is_redundant {
-            let [lower, upper] = limits.inset_positions(INSET);
-            Bounds::from_ranges(lower.into_iter().zip(upper))
-        } else {
-            // Whole turns are chosen afterwards, so that one path serves all of them.
-            Bounds::from_ranges((0..robot.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
+        let follower = |tip: &'a MovingTip<'a>| {
+            let bounds = if tip.is_redundant() {
+                let [lower, upper] = limits.inset_positions(INSET);
+                Bounds::from_ranges(lower.into_iter().zip(upper))
+            } else {
+                // Whole turns are chosen afterwards, so that one path serves all of them.
+                Bounds::from_ranges((0..tip.dof()).map(|_| (f64::NEG_INFINITY, f64::INFINITY)))
+            };
+            Follower::new(tip, bounds)
         };
-        let follower = Follower::new(robot, task, bounds);
-        Self { robot, limits, around, is_redundant, follower, task, each, evaluations: 0 }
+        let followers = tips.iter().map(follower).collect();
+        Self { limits, around, tips, followers, searches, evaluations: 0 }
     }
 
-    /// The follower, for refinement.
-    pub fn follower(&mut self) -> &mut Follower<'a> {
-        &mut self.follower
+    /// The follower of tip number `tip`, for refinement.
+    pub fn follower(&mut self, tip: usize) -> &mut Follower<'a> {
+        &mut self.followers[tip]
     }
 
     /// The quickest sequence of rungs from the configuration `start`; the index of a block that has none, and why.
@@ -157,7 +89,7 @@ impl<'a> Ladder<'a> {
         let mut ladder: Vec<Vec<Rung>> = vec![];
         for (i, block) in blocks.iter().enumerate() {
             let found = match (&block.goal, ladder.last()) {
-                (Some((_, goal)), Some(before)) => self.rungs(goal, &block.paths, before, monitor)?,
+                (Some((_, goal)), Some(before)) => self.rungs(block, goal, before, monitor)?,
                 _ => self
                     .tracks_by_any_lead(start, &block.paths, monitor)?
                     .map(|tracks| vec![self.rung(start.into(), tracks)]),
@@ -175,89 +107,111 @@ impl<'a> Ladder<'a> {
             chosen.push(rung);
         }
         chosen.reverse();
-        self.evaluations += self.follower.evaluations;
+        self.evaluations += self.followers.iter().map(|follower| follower.evaluations).sum::<usize>();
         Ok(Ok(chosen))
     }
 
-    /// The rungs of a block after those of the block `before`, the quickest first.
+    /// The rungs of a block that begins with a joint move, after those of the block `before`; the quickest first.
     fn rungs(
         &mut self,
+        block: &LadderBlock<'_>,
         goal: &JointGoal,
-        paths: &[&ToolPath],
         before: &[Rung],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Rung>, Dead>> {
+        let found = match goal {
+            JointGoal::Configuration(q) => {
+                let before: Vec<Before<'_>> = before.iter().enumerate().collect();
+                let tracks = self.tracks_by_any_lead(q, &block.paths, monitor)?;
+                tracks.map(|tracks| vec![self.after(&before, q.as_slice().into(), tracks)])
+            }
+            JointGoal::Pose(pose) => self.rungs_at(pose, block, before, monitor)?,
+        };
+        Ok(found.map(|mut rungs| {
+            rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+            rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
+            rungs.truncate(MOST_RUNGS * self.tips.len());
+            rungs
+        }))
+    }
+
+    /// The rungs of a block whose joint move leads a tip to a pose.
+    fn rungs_at(
+        &mut self,
+        pose: &Pose,
+        block: &LadderBlock<'_>,
+        before: &[Rung],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Rung>, Dead>> {
+        let (tip, paths) = (&self.tips[block.tip], &block.paths);
         let (mut rungs, mut failed) = (vec![], None);
-        match goal {
-            JointGoal::Configuration(q) => match self.tracks_by_any_lead(q, paths, monitor)? {
-                Ok(tracks) => rungs.push(self.after(before, q.as_slice().into(), tracks)),
-                Err(dead) => failed = Some(dead),
-            },
-            JointGoal::Pose(pose) => {
-                let candidates = match self.configurations(pose, before[0].end(), monitor)? {
-                    Ok(candidates) => candidates,
-                    Err(why) => return Ok(Err(Dead::Goal(why))),
-                };
-                let enough = if self.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
-                for candidate in candidates.iter().take(MOST_FOLLOWED) {
-                    if self.is_redundant && rungs.len() >= enough {
-                        break;
-                    }
-                    match self.placed(candidate, paths, before) {
-                        Ok(more) => rungs.extend(more),
-                        Err(dead) => failed = Some(farther(failed, dead)),
-                    }
-                }
-                for candidate in candidates.iter().take(MOST_LED) {
-                    if !self.is_redundant || !rungs.is_empty() {
-                        break;
-                    }
-                    let q = self.near(candidate, before);
-                    match self.tracks_by_any_lead(&q, paths, monitor)? {
-                        Ok(tracks) => rungs.push(self.after(before, q, tracks)),
-                        Err(dead) => failed = Some(farther(failed, dead)),
-                    }
+        let candidates = match self.configurations(tip, pose, before[0].end(), monitor)? {
+            Ok(candidates) => candidates,
+            Err(why) => return Ok(Err(Dead::Goal(why))),
+        };
+        let groups = groups(tip, before);
+        let enough = if tip.task.is_whole() { ENOUGH } else { ENOUGH_FREE };
+        for candidate in candidates.iter().take(MOST_FOLLOWED) {
+            if tip.is_redundant() && rungs.len() >= enough {
+                break;
+            }
+            for group in &groups {
+                match self.placed(tip, candidate, paths, group) {
+                    Ok(more) => rungs.extend(more),
+                    Err(dead) => failed = Some(farther(failed, dead)),
                 }
             }
         }
-        if rungs.is_empty() {
-            let none = || Dead::Goal("the arm has no configuration there".into());
-            return Ok(Err(failed.unwrap_or_else(none)));
+        for candidate in candidates.iter().take(MOST_LED) {
+            if !tip.is_redundant() || !rungs.is_empty() {
+                break;
+            }
+            let q = self.near(tip, candidate, &groups[0]);
+            match self.tracks_by_any_lead(&q, paths, monitor)? {
+                Ok(tracks) => rungs.push(self.after(&groups[0], q, tracks)),
+                Err(dead) => failed = Some(farther(failed, dead)),
+            }
         }
-        rungs.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-        rungs.dedup_by(|one, other| largest_difference(&one.q, &other.q) < SAME);
-        rungs.truncate(MOST_RUNGS);
-        Ok(Ok(rungs))
+        let none = || Dead::Goal("the arm has no configuration there".into());
+        Ok(if rungs.is_empty() { Err(failed.unwrap_or_else(none)) } else { Ok(rungs) })
     }
 
     /// Configurations at a pose, those nearest to `reference` first; why there are none.
     fn configurations(
         &mut self,
+        tip: &'a MovingTip<'a>,
         pose: &Pose,
         reference: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Point>, crate::message::Message>> {
-        let Self { robot, task, each, follower, .. } = self;
-        MoveConfigurations { robot, task, each, follower }.at(pose, reference, monitor)
+        let (each, follower) = (&self.searches[tip.number], &mut self.followers[tip.number]);
+        MoveConfigurations { tip, each, follower }.at(pose, reference, monitor)
     }
 
-    /// The rungs of one configuration at the start of a block, at the whole turns that suit each of the rungs before.
-    fn placed(&mut self, candidate: &[f64], paths: &[&ToolPath], before: &[Rung]) -> Result<Vec<Rung>, Dead> {
-        if self.is_redundant {
-            let q = self.near(candidate, before);
+    /// The rungs of one configuration of a tip at the start of a block, at the whole turns that suit each of the rungs before.
+    fn placed(
+        &mut self,
+        tip: &MovingTip<'_>,
+        candidate: &[f64],
+        paths: &[&ToolPath],
+        before: &[Before<'_>],
+    ) -> Result<Vec<Rung>, Dead> {
+        if tip.is_redundant() {
+            let q = self.near(tip, candidate, before);
             let tracks = self.tracks(&q, paths, None)?;
             return Ok(vec![self.after(before, q, tracks)]);
         }
+        let candidate = &tip.whole(&tip.own(candidate), before[0].1.end());
         let tracks = self.follow_all(candidate, paths, None)?;
         let mut rungs: Vec<Rung> = vec![];
-        for rung in before {
+        for (_, rung) in before {
             let turns = self
-                .turns(candidate, &tracks, rung.end())
+                .turns(tip, candidate, &tracks, rung.end())
                 .map_err(|(joint, value)| self.beyond(&tracks, joint, value))?;
             let moved = |values: &[f64]| values.iter().zip(&turns).map(|(q, turn)| q + turn).collect::<Point>();
             let q = moved(tracks.first().map_or(candidate, |track| track.row(0)));
             if rungs.iter().all(|known| largest_difference(&known.q, &q) > SAME) {
-                let n = self.robot.dof();
+                let n = tip.dof();
                 let tracks = tracks.iter().map(|track| Track {
                     knots: track.knots.clone(),
                     rows: track.rows.chunks_exact(n).flat_map(&moved).collect(),
@@ -269,11 +223,10 @@ impl<'a> Ladder<'a> {
         Ok(rungs)
     }
 
-    /// A configuration at the whole turns nearest to the end of the quickest rung `before`.
-    fn near(&self, candidate: &[f64], before: &[Rung]) -> Point {
-        let mut q = Point::from_slice(candidate);
-        bring_near(self.robot, &Bounds::from_ranges(self.ranges()), before[0].end(), &mut q);
-        q
+    /// A configuration of a tip at the whole turns nearest to the end of the quickest rung `before`.
+    fn near(&self, tip: &MovingTip<'_>, candidate: &[f64], before: &[Before<'_>]) -> Point {
+        let end = before[0].1.end();
+        tip.near(&tip.whole(&tip.own(candidate), end), &Bounds::from_ranges(self.ranges()), end)
     }
 
     /// Follows all paths from `q` with the least motion of the joints. Where that leads a redundant arm into a limit, a singularity or an
@@ -288,14 +241,15 @@ impl<'a> Ladder<'a> {
         paths: &[&ToolPath],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Track>, Dead>> {
-        let dead = match self.tracks(q, paths, None) {
-            Err(dead @ Dead::Path { .. }) if self.is_redundant => dead,
+        let (dead, path, at) = match self.tracks(q, paths, None) {
+            Err(dead @ Dead::Path { path, at, .. }) if self.tips[paths[path].tip].is_redundant() => (dead, path, at),
             other => return Ok(other),
         };
-        let Dead::Path { path, at, .. } = &dead else { return Ok(Err(dead)) };
-        let length = paths[..*path].iter().map(|path| path.length()).sum::<f64>() + at;
-        let end = Pose::from(paths[*path].pose(paths[*path].length()));
-        let mut leads = self.configurations(&end, q, monitor)?.unwrap_or_default();
+        let tip = &self.tips[paths[path].tip];
+        let before = paths[..path].iter().filter(|path| path.tip == tip.number);
+        let length = before.map(|path| path.length()).sum::<f64>() + at;
+        let end = Pose::from(paths[path].pose(paths[path].length()));
+        let mut leads = self.configurations(tip, &end, q, monitor)?.unwrap_or_default();
         leads.truncate(MOST_LED_TO);
         let middle = |((lower, upper), q): ((f64, f64), &f64)| {
             let middle = 0.5 * (lower + upper);
@@ -305,7 +259,7 @@ impl<'a> Ladder<'a> {
         let mut failed = dead;
         for part in LEAD_WITHIN {
             for toward in &leads {
-                let lead = Lead { toward, within: part * length.max(LEAST_LENGTH) };
+                let lead = Lead { tip: tip.number, toward, within: part * length.max(LEAST_LENGTH) };
                 match self.tracks(q, paths, Some(&lead)) {
                     Ok(tracks) => return Ok(Ok(tracks)),
                     Err(dead) => failed = farther(Some(failed), dead),
@@ -318,7 +272,7 @@ impl<'a> Ladder<'a> {
     /// Follows all paths from `q`, and checks limits.
     fn tracks(&mut self, q: &[f64], paths: &[&ToolPath], lead: Option<&Lead<'_>>) -> Result<Vec<Track>, Dead> {
         let tracks = self.follow_all(q, paths, lead)?;
-        for joint in 0..self.robot.dof() {
+        for joint in 0..q.len() {
             let [lowest, highest] = range(q, &tracks, joint);
             if let Some(value) = self.excess(joint, [lowest, highest]) {
                 return Err(self.beyond(&tracks, joint, value));
@@ -332,7 +286,8 @@ impl<'a> Ladder<'a> {
         for (i, path) in paths.iter().enumerate() {
             let from = tracks.last().map_or(q, Track::end).to_vec();
             let lost = |Lost { at }| Dead::Path { path: i, at, cause: Cause::OutOfReach };
-            tracks.push(self.follower.follow(path, &from, lead).map_err(lost)?);
+            let lead = lead.filter(|lead| lead.tip == path.tip);
+            tracks.push(self.followers[path.tip].follow(path, &from, lead).map_err(lost)?);
         }
         match self.blocked(q, &tracks) {
             None => Ok(tracks),
@@ -357,13 +312,19 @@ impl<'a> Ladder<'a> {
         })
     }
 
-    /// Whole turns of each joint (rad) with which a block stays inside the limits, as near to `reference` at its start as possible; the
-    /// joint and its value where none do.
-    fn turns(&self, q: &[f64], tracks: &[Track], reference: &[f64]) -> Result<Point, (usize, f64)> {
+    /// Whole turns of each joint (rad) of a tip with which a block stays inside the limits, as near to `reference` at its start as possible;
+    /// the joint and its value where none do.
+    fn turns(
+        &self,
+        tip: &MovingTip<'_>,
+        q: &[f64],
+        tracks: &[Track],
+        reference: &[f64],
+    ) -> Result<Point, (usize, f64)> {
         let start = tracks.first().map_or(q, |track| track.row(0));
         let of_joint = |joint: usize| {
             let ends = range(start, tracks, joint);
-            let Some(period) = self.robot.turn_period(joint) else {
+            let Some(period) = tip.turn_period(joint) else {
                 return self.excess(joint, ends).map_or(Ok(0.0), |value| Err((joint, value)));
             };
             let [lower, upper] = [self.limits.lower[joint], self.limits.upper[joint]];
@@ -376,7 +337,7 @@ impl<'a> Ladder<'a> {
             }
             Ok(((reference[joint] - start[joint]) / period).round().clamp(fewest, most) * period)
         };
-        (0..self.robot.dof()).map(of_joint).collect()
+        (0..q.len()).map(of_joint).collect()
     }
 
     /// The end of this range that is farther beyond the limits of a joint.
@@ -416,10 +377,10 @@ impl<'a> Ladder<'a> {
     }
 
     /// A rung after the quickest of those `before`.
-    fn after(&self, before: &[Rung], q: Point, tracks: Vec<Track>) -> Rung {
+    fn after(&self, before: &[Before<'_>], q: Point, tracks: Vec<Track>) -> Rung {
         let Rung { q, tracks, .. } = self.rung(q, tracks);
         let total = |rung: &Rung| rung.cost + self.joint_time(rung.end(), &q);
-        let costs = before.iter().map(total).enumerate();
+        let costs = before.iter().map(|(index, rung)| (*index, total(rung)));
         let (index, cost) = costs.min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((0, 0.0));
         let along: f64 = tracks.iter().map(|track| self.track_time(track)).sum();
         Rung { q, tracks, cost: cost + along, before: index }
@@ -432,7 +393,7 @@ impl<'a> Ladder<'a> {
             let (v, a) = (self.limits.velocity[joint], self.limits.acceleration[joint]);
             if way * a < v * v { 2.0 * (way / a).sqrt() } else { way / v + v / a }
         };
-        (0..self.robot.dof()).map(time).fold(0.0, f64::max)
+        (0..from.len()).map(time).fold(0.0, f64::max)
     }
 
     /// Least time (s) along a track at full joint speeds.
@@ -446,23 +407,5 @@ impl<'a> Ladder<'a> {
 
     fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
         self.limits.lower.iter().copied().zip(self.limits.upper.iter().copied())
-    }
-}
-
-/// Smallest and largest value of a joint along tracks that begin at `q`.
-fn range(q: &[f64], tracks: &[Track], joint: usize) -> [f64; 2] {
-    let rows = tracks.iter().flat_map(|track| track.rows.chunks_exact(q.len()));
-    rows.map(|row| row[joint]).fold([q[joint]; 2], |[low, high], value| [low.min(value), high.max(value)])
-}
-
-/// Of two reasons, the one that comes later on the way.
-fn farther(known: Option<Dead>, found: Dead) -> Dead {
-    let place = |dead: &Dead| match dead {
-        Dead::Goal(_) => (0, 0.0),
-        Dead::Path { path, at, .. } => (*path + 1, *at),
-    };
-    match known {
-        Some(known) if place(&known) >= place(&found) => known,
-        _ => found,
     }
 }

@@ -6,9 +6,11 @@
 //! | `around` | obstacles, and what is kept on the way |
 //! | `leg`, `corner`, `tool_path` | lines and arcs by their length, rounded corners, the path from stop to stop |
 //! | `move_task` | what moves must meet of their poses |
+//! | `moving_tip` | tips, what each must meet, and the joints that move it |
 //! | `outline` | a program as steps from rest to rest |
 //! | `follower` | joint positions along a path, by Newton's method and splines |
 //! | `move_configurations` | configurations in which the tip meets a pose |
+//! | `ladder_block`, `rung` | blocks of a program, and configurations at their starts |
 //! | `ladder`, `climber` | configurations for the whole program, and words for where there are none |
 //! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
 //! | `timing` | the fastest motion at the speed asked for |
@@ -24,16 +26,19 @@ mod corner;
 mod follower;
 mod joint_corner;
 mod ladder;
+mod ladder_block;
 mod leg;
 mod move_configurations;
 mod move_task;
 mod moves_options;
+mod moving_tip;
 mod outline;
 mod plan_moves;
 mod program;
 mod program_planner;
 mod report;
 mod run;
+mod rung;
 mod timing;
 mod tool_path;
 

@@ -1,14 +1,13 @@
 //! Configurations in which the tip meets a pose of a program.
 
 use super::follower::Follower;
-use super::move_task::MoveTask;
+use super::moving_tip::MovingTip;
 use crate::error::Result;
 use crate::ik::{AllOptions, SolveOptions, solve, solve_all};
 use crate::math::vector::{largest_difference, squared_distance};
 use crate::math::{Frame, Pose};
 use crate::message::Message;
 use crate::objective::Point;
-use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
@@ -24,14 +23,15 @@ const SAME: f64 = 1e-6;
 
 /// The source of configurations.
 pub(super) struct MoveConfigurations<'s, 'a> {
-    pub robot: &'a Robot,
-    pub task: &'s MoveTask,
+    pub tip: &'a MovingTip<'a>,
+    /// Options of searches for the robot that [`MovingTip::solved`] gives.
     pub each: &'s SolveOptions,
     pub follower: &'s mut Follower<'a>,
 }
 
 impl MoveConfigurations<'_, '_> {
-    /// Configurations that meet the task at a pose, those nearest to `reference` first; why there are none.
+    /// Configurations of the whole robot that meet the task at a pose, those nearest to `reference` first, whose other joints they have; why
+    /// there are none.
     ///
     /// # Errors
     /// Those of `solve_all`.
@@ -41,26 +41,16 @@ impl MoveConfigurations<'_, '_> {
         reference: &[f64],
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Point>, Message>> {
-        if self.task.is_whole() {
-            return self.of_whole_pose(pose, reference, monitor);
+        let (seen, own) = (self.tip.seen(pose, reference), self.tip.own(reference));
+        if self.tip.task.is_whole() {
+            let found = self.of_whole_pose(&seen, &own, monitor)?;
+            return Ok(found.map(|found| self.wholes(&found, reference)));
         }
-        let mut found = vec![];
-        let nearest = SolveOptions { start: Some(reference.to_vec()), ..self.searched() };
-        let nearest = solve(self.robot, &Target::from(pose), &nearest, monitor)?;
-        if nearest.status == Status::Solved {
-            found.push(nearest.q);
-        }
-        if self.robot.solves_at_once() == Some(true) {
-            found.extend(self.by_closed_form(pose, reference, monitor)?);
-        }
-        if found.len() < 2 {
-            let options = AllOptions { each: self.searched(), limit: Some(SEARCHED), ..AllOptions::default() };
-            let all = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
-            if found.is_empty() && all.solutions.is_empty() {
-                return Ok(Err(all.message()));
-            }
-            found.extend(all.solutions.iter().map(|solution| Point::from_slice(solution.q)));
-        }
+        let found = match self.of_part(&seen, &own, monitor)? {
+            Ok(found) => found,
+            Err(why) => return Ok(Err(why)),
+        };
+        let mut found = self.wholes(&found, reference);
         // A search ends within its tolerance, and a path begins on its pose.
         let place = Frame::from(pose);
         found.retain_mut(|q| self.follower.meet(&place, q));
@@ -68,6 +58,38 @@ impl MoveConfigurations<'_, '_> {
         found.dedup_by(|one, other| largest_difference(one, other) < SAME);
         let none = "the search ended near the pose, but no configuration inside the limits meets it";
         Ok(if found.is_empty() { Err(none.into()) } else { Ok(found) })
+    }
+
+    /// The configurations of the whole robot, whose other joints are at `reference`.
+    fn wholes(&self, found: &[Point], reference: &[f64]) -> Vec<Point> {
+        found.iter().map(|own| self.tip.whole(own, reference)).collect()
+    }
+
+    /// Configurations near a pose of which the task asks a part.
+    fn of_part(
+        &self,
+        pose: &Pose,
+        reference: &[f64],
+        monitor: &mut dyn Monitor,
+    ) -> Result<Result<Vec<Point>, Message>> {
+        let mut found = vec![];
+        let nearest = SolveOptions { start: Some(reference.to_vec()), ..self.searched() };
+        let nearest = solve(self.tip.solved(), &Target::from(pose), &nearest, monitor)?;
+        if nearest.status == Status::Solved {
+            found.push(nearest.q);
+        }
+        if self.tip.solved().solves_at_once() == Some(true) {
+            found.extend(self.by_closed_form(pose, reference, monitor)?);
+        }
+        if found.len() < 2 {
+            let options = AllOptions { each: self.searched(), limit: Some(SEARCHED), ..AllOptions::default() };
+            let all = solve_all(self.tip.solved(), &Target::from(pose), &options, monitor)?;
+            if found.is_empty() && all.solutions.is_empty() {
+                return Ok(Err(all.message()));
+            }
+            found.extend(all.solutions.iter().map(|solution| Point::from_slice(solution.q)));
+        }
+        Ok(Ok(found))
     }
 
     fn of_whole_pose(
@@ -78,7 +100,7 @@ impl MoveConfigurations<'_, '_> {
     ) -> Result<Result<Vec<Point>, Message>> {
         let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
         let options = AllOptions { each, redundancy: REDUNDANCY, ..AllOptions::default() };
-        let found = solve_all(self.robot, &Target::from(pose), &options, monitor)?;
+        let found = solve_all(self.tip.solved(), &Target::from(pose), &options, monitor)?;
         if found.solutions.is_empty() {
             return Ok(Err(found.message()));
         }
@@ -87,13 +109,13 @@ impl MoveConfigurations<'_, '_> {
 
     /// Configurations at poses that are spread over what the task leaves free.
     fn by_closed_form(&self, pose: &Pose, reference: &[f64], monitor: &mut dyn Monitor) -> Result<Vec<Point>> {
-        let poses = self.task.spread(pose);
+        let poses = self.tip.task.spread(pose);
         let redundancy = if poses.len() > 1 { REDUNDANCY_OF_EACH } else { REDUNDANCY };
         let each = SolveOptions { start: Some(reference.to_vec()), ..self.each.clone() };
         let options = AllOptions { each, redundancy, ..AllOptions::default() };
         let mut found = vec![];
         for pose in poses {
-            let all = solve_all(self.robot, &Target::from(&pose), &options, monitor)?;
+            let all = solve_all(self.tip.solved(), &Target::from(&pose), &options, monitor)?;
             found.extend(all.solutions.iter().map(|solution| Point::from_slice(solution.q)));
         }
         Ok(found)
@@ -101,6 +123,6 @@ impl MoveConfigurations<'_, '_> {
 
     /// Options of a search for the task.
     fn searched(&self) -> SolveOptions {
-        SolveOptions { task: self.task.searched(), ..self.each.clone() }
+        SolveOptions { task: self.tip.task.searched(), ..self.each.clone() }
     }
 }

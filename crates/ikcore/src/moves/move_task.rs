@@ -44,15 +44,13 @@ impl MoveTask {
         Ok(Self { task: Some(Task { tool: None, ..*task }), band: Some(band) })
     }
 
-    /// Tasks that ask for more: what meets one of them meets this one.
-    pub fn tighter(&self) -> impl Iterator<Item = Self> {
-        let exact = self.band.filter(|band| band.largest() > 0.0).map(|_| self.exact());
-        let whole = self.task.map(|_| Self::default());
-        exact.into_iter().chain(whole)
+    /// Whether the tip may be off the part that counts.
+    pub fn has_tolerance(&self) -> bool {
+        self.band.is_some_and(|band| band.largest() > 0.0)
     }
 
     /// The same task without its tolerances.
-    fn exact(&self) -> Self {
+    pub fn exact(&self) -> Self {
         Self { task: self.task, band: self.band.map(|band| band.at_most(0.0)) }
     }
 

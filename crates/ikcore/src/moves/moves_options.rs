@@ -12,6 +12,8 @@ pub struct MovesOptions {
     /// What lines, arcs and joint moves to poses must meet of their poses, with a tool if needed. Positions stay on the lines and arcs,
     /// whatever their tolerance. `None` means whole poses.
     pub task: Option<Task>,
+    /// The same for these tips, by number, in place of `task`.
+    pub tip_tasks: Vec<(usize, Option<Task>)>,
     /// What the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
     /// What holds at every instant of the motion.
@@ -22,4 +24,12 @@ pub struct MovesOptions {
     pub stop: Option<Stop>,
     /// Seed of the random draws; the same seed gives the same bits.
     pub seed: u64,
+}
+
+impl MovesOptions {
+    /// What the moves of tip number `tip` must meet.
+    pub(super) fn task_of(&self, tip: usize) -> Option<&Task> {
+        let own = self.tip_tasks.iter().find(|(number, _)| *number == tip);
+        own.map_or(self.task.as_ref(), |(_, task)| task.as_ref())
+    }
 }

@@ -4,12 +4,11 @@ use nalgebra::Rotation3;
 
 use super::corner::Corner;
 use super::leg::Leg;
-use super::move_task::MoveTask;
+use super::moving_tip::{MovingTip, led_by};
 use super::program::{JointGoal, Move, MoveKind};
 use super::tool_path::{ROUNDING, ToolPath};
 use crate::error::{Error, Result};
 use crate::math::Pose;
-use crate::robot::Robot;
 use crate::wording::number;
 
 /// A part of a program, from rest to rest.
@@ -34,23 +33,26 @@ pub(super) struct Stage {
 ///
 /// # Errors
 /// [`Error::InvalidMove`].
-pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64], task: &MoveTask) -> Result<Vec<Stage>> {
+pub(super) fn outline(tips: &[MovingTip<'_>], moves: &[Move], start: &[f64]) -> Result<Vec<Stage>> {
     let mut stages: Vec<Stage> = vec![];
     let mut legs: Vec<Leg> = vec![];
-    let mut pose: Pose = robot.tip(start).into();
+    let poses_at = |q: &[f64]| -> Vec<Pose> { tips.iter().map(|tip| tip.frame(q).into()).collect() };
+    let mut poses = poses_at(start);
     for (i, each) in moves.iter().enumerate() {
         let blend = if i + 1 < moves.len() { each.blend } else { 0.0 };
+        let MovingTip { number: tip, task, .. } = &led_by(tips, each)[0];
+        let pose = &mut poses[*tip];
         let mut push = |kind: StageKind, blend: f64| stages.push(Stage { kind, blend });
         match &each.kind {
             MoveKind::Wait(seconds) => push(StageKind::Rest(i, *seconds), 0.0),
             MoveKind::Joints(goal) => {
                 push(StageKind::Joints(i), blend);
-                pose = match goal {
-                    JointGoal::Configuration(q) => robot.tip(q).into(),
-                    JointGoal::Pose(goal) => *goal,
-                };
+                match goal {
+                    JointGoal::Configuration(q) => poses = poses_at(q),
+                    JointGoal::Pose(goal) => *pose = *goal,
+                }
             }
-            MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, &pose, task)? {
+            MoveKind::Line { .. } | MoveKind::Arc { .. } => match Leg::of(i, each, pose, task)? {
                 None => {
                     let before = i.checked_sub(1).filter(|before| moves[*before].blend > 0.0);
                     if let Some(with_blend) = before.or((blend > 0.0).then_some(i)) {
@@ -58,20 +60,20 @@ pub(super) fn outline(robot: &Robot, moves: &[Move], start: &[f64], task: &MoveT
                     }
                     push(StageKind::Rest(i, 0.0), 0.0);
                     if !task.is_whole() {
-                        pose.rotation = orientation_of(each, &pose);
+                        pose.rotation = orientation_of(each, pose);
                     }
                 }
                 Some(leg) => {
-                    pose = end_of(&leg, each);
+                    *pose = end_of(&leg, each);
                     require_length(moves, i, &leg)?;
                     // No smooth curve leads back: the arm stops there.
                     if legs.last().is_some_and(|before| Corner::turns_back(before, &leg)) {
-                        push(StageKind::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), 0.0);
+                        push(StageKind::Along(ToolPath::along(*tip, std::mem::take(&mut legs), moves)?), 0.0);
                     }
                     legs.push(leg);
                     let goes_on = blend > 0.0 && moves[i + 1].is_cartesian();
                     if !goes_on {
-                        push(StageKind::Along(ToolPath::along(std::mem::take(&mut legs), moves)?), blend);
+                        push(StageKind::Along(ToolPath::along(*tip, std::mem::take(&mut legs), moves)?), blend);
                     }
                 }
             },

@@ -3,6 +3,7 @@
 use super::around::MoveSurroundings;
 use super::move_task::MoveTask;
 use super::moves_options::MovesOptions;
+use super::moving_tip::{MovingTip, led_by};
 use super::program::{JointGoal, Move, MoveKind, check_program, with_blends_that_count};
 use super::program_planner::ProgramPlanner;
 use crate::error::{Error, Result};
@@ -10,7 +11,6 @@ use crate::limits::StartSlack;
 use crate::plan::Plan;
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status, Stopwatch};
-use crate::task::Task;
 use crate::timing::ConstantLimits;
 
 /// Plans the motion of a program of `moves`, from rest at `start` to rest.
@@ -33,11 +33,10 @@ pub fn plan_moves(
 ) -> Result<Plan> {
     const METHOD: &str = "plan_moves";
     let stopwatch = Stopwatch::start();
-    robot.require_one_tip(METHOD)?;
-    let task = MoveTask::of(options.task.as_ref())?;
-    let with_tool = options.task.map_or(Ok(None), |task: Task| task.robot(robot))?;
+    let tips = MovingTip::all(robot, options)?;
     let moves = &with_blends_that_count(moves);
     check_program(robot, moves)?;
+    require_movable(&tips, moves)?;
     robot.check("start_q", start)?;
     let limits = ConstantLimits::for_robot(robot, options.limits.as_ref(), METHOD)?;
     limits.require_accelerations(METHOD)?;
@@ -52,15 +51,14 @@ pub fn plan_moves(
     };
     let start = admitted("start_q", start)?;
     let moves = &with_goals(moves, admitted)?;
-    let robot = with_tool.as_ref().unwrap_or(robot);
-    let planner = ProgramPlanner { around, robot, moves, start: &start, options, explains: true };
-    let mut planned = planner.plan(&task, monitor);
+    let planner = ProgramPlanner { around, tips: &tips, moves, start: &start, options, explains: true };
+    let mut planned = planner.plan(monitor);
     let mut evaluations = count(&planned);
-    for tighter in task.tighter() {
+    for tighter in tighter(&tips) {
         if let Err(Error::Interrupted) = planned {
             break;
         }
-        let other = ProgramPlanner { explains: false, ..planner }.plan(&tighter, monitor);
+        let other = ProgramPlanner { tips: &tighter, explains: false, ..planner }.plan(monitor);
         evaluations += count(&other);
         planned = better(planned, other);
     }
@@ -68,6 +66,34 @@ pub fn plan_moves(
     plan.evaluations = evaluations;
     plan.elapsed = stopwatch.elapsed();
     Ok(plan)
+}
+
+/// The same tips with tasks that ask for more: without tolerances where there are some, and for whole poses.
+fn tighter<'a>(tips: &[MovingTip<'a>]) -> impl Iterator<Item = Vec<MovingTip<'a>>> {
+    let all = |tighter: fn(&MoveTask) -> MoveTask| tips.iter().map(|tip| tip.with_task(tighter(&tip.task))).collect();
+    let has_tolerance = tips.iter().any(|tip| tip.task.has_tolerance());
+    let leaves_a_part = tips.iter().any(|tip| !tip.task.is_whole());
+    let exact: Option<Vec<_>> = has_tolerance.then(|| all(MoveTask::exact));
+    let whole: Option<Vec<_>> = leaves_a_part.then(|| all(|_| MoveTask::default()));
+    exact.into_iter().chain(whole)
+}
+
+/// Checks that joints move each tip that a move names while the others stay.
+///
+/// # Errors
+/// [`Error::InvalidMove`].
+fn require_movable(tips: &[MovingTip<'_>], moves: &[Move]) -> Result<()> {
+    let is_stuck = |each: &Move| each.tip.is_some() && !led_by(tips, each)[0].is_movable();
+    match moves.iter().enumerate().find(|(_, each)| is_stuck(each)) {
+        None => Ok(()),
+        Some((i, each)) => {
+            let problem = format!(
+                "no joint moves tip '{}' alone, and joints that move other tips too stay where they are: give a joint move to a configuration",
+                each.tip.as_deref().unwrap_or_default()
+            );
+            Err(Error::InvalidMove { what: each.named(i), problem: problem.into() })
+        }
+    }
 }
 
 fn count(planned: &Result<Plan>) -> usize {

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, require_finite, require_not_negative, require_positive};
 use crate::math::{Pose, pose};
 use crate::robot::Robot;
+use crate::wording::joined;
 
 /// Longest wait (s), as for pauses between motions.
 const LONGEST_WAIT: f64 = 1e6;
@@ -15,6 +16,9 @@ pub struct Move {
     /// Radius (m) about the end of the move inside which the motion may round the corner to the next move. With zero, or less than the
     /// 1e-5 m that a path is kept to, it stops there.
     pub blend: f64,
+    /// The tip that a line, an arc or a joint move to a pose leads, of a robot with several: joints that move another tip too stay where they
+    /// are. `None`: the only tip.
+    pub tip: Option<String>,
     /// Name in messages and reports.
     pub name: Option<String>,
 }
@@ -56,9 +60,9 @@ pub enum JointGoal {
 }
 
 impl Move {
-    /// This move, without blend and name.
+    /// This move, without blend, tip and name.
     pub fn new(kind: MoveKind) -> Self {
-        Self { kind, blend: 0.0, name: None }
+        Self { kind, blend: 0.0, tip: None, name: None }
     }
 
     /// Words for move `index` of a program, counted from 0.
@@ -74,6 +78,11 @@ impl Move {
         matches!(self.kind, MoveKind::Line { .. } | MoveKind::Arc { .. })
     }
 
+    /// Whether it ends at a pose, and so leads one tip.
+    fn leads_a_tip(&self) -> bool {
+        self.is_cartesian() || matches!(self.kind, MoveKind::Joints(JointGoal::Pose(_)))
+    }
+
     /// Speed of the tip that is asked for (m/s).
     pub(super) fn speed(&self) -> Option<f64> {
         match self.kind {
@@ -87,7 +96,18 @@ impl Move {
     /// # Errors
     /// [`Error::OutOfRange`] and [`Error::NotFinite`] name the number.
     pub fn validate(&self) -> Result<()> {
-        self.check_numbers(&self.name.as_ref().map_or(String::new(), |name| format!(" of move '{name}'")))
+        self.check_numbers(&self.name.as_ref().map_or(String::new(), |name| format!(" of move '{name}'")))?;
+        self.refuse_superfluous_tip(|| self.name.as_ref().map_or("the move".into(), |name| format!("move '{name}'")))
+    }
+
+    fn refuse_superfluous_tip(&self, named: impl Fn() -> String) -> Result<()> {
+        match &self.tip {
+            Some(tip) if !self.leads_a_tip() => {
+                let problem = format!("it leads no tip to a pose, but names tip '{tip}': leave the tip out");
+                Err(Error::InvalidMove { what: named(), problem: problem.into() })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checks numbers and lengths.
@@ -95,7 +115,22 @@ impl Move {
         if let MoveKind::Joints(JointGoal::Configuration(q)) = &self.kind {
             robot.check(&format!("joint positions of {named}"), q)?;
         }
-        self.check_numbers(&format!(" of {named}"))
+        self.check_numbers(&format!(" of {named}"))?;
+        self.check_tip(named, robot)
+    }
+
+    /// Checks that a move to a pose leads one tip.
+    fn check_tip(&self, named: &str, robot: &Robot) -> Result<()> {
+        self.refuse_superfluous_tip(|| named.into())?;
+        if let Some(tip) = &self.tip {
+            return robot.tip_number(tip).map(|_| ());
+        }
+        if robot.tip_count() == 1 || !self.leads_a_tip() {
+            return Ok(());
+        }
+        let (name, tips) = (robot.name(), joined(robot.tips()));
+        let problem = format!("it names no tip of robot '{name}', which has several: name one of {tips}");
+        Err(Error::InvalidMove { what: named.into(), problem: problem.into() })
     }
 
     /// Checks numbers; `of` says of which move, in messages.
@@ -135,11 +170,11 @@ pub(super) fn with_blends_that_count(moves: &[Move]) -> Vec<Move> {
     moves.iter().map(counted).collect()
 }
 
-/// Checks each move by itself, and that no blend leads into a wait.
+/// Checks each move by itself, and that no blend leads into a wait or to another tip.
 ///
 /// # Errors
-/// [`Error::InvalidMove`] for a program without moves and for a blend before a wait; [`Error::OutOfRange`], [`Error::NotFinite`] and
-/// [`Error::WrongLength`] name the move.
+/// [`Error::InvalidMove`] for a program without moves, for a blend before a wait or a move of another tip, and for a move whose tip is missing
+/// or superfluous; [`Error::OutOfRange`], [`Error::NotFinite`], [`Error::WrongLength`] and [`Error::UnknownTip`].
 pub(super) fn check_program(robot: &Robot, moves: &[Move]) -> Result<()> {
     if moves.is_empty() {
         let problem = "it has no moves: give at least one".into();
@@ -147,14 +182,18 @@ pub(super) fn check_program(robot: &Robot, moves: &[Move]) -> Result<()> {
     }
     for (i, each) in moves.iter().enumerate() {
         each.check(&each.named(i), robot)?;
-        if let (true, Some(Move { kind: MoveKind::Wait(_), .. })) = (each.blend > 0.0, moves.get(i + 1)) {
-            let next = moves[i + 1].named(i + 1);
-            let problem = format!(
-                "its blend of {} m leads into {next}, a wait, before which the arm stops: give no blend",
-                each.blend
-            );
-            return Err(Error::InvalidMove { what: each.named(i), problem: problem.into() });
-        }
+        let Some(next) = moves.get(i + 1).filter(|_| each.blend > 0.0) else { continue };
+        let what_follows = match (&each.tip, &next.tip) {
+            _ if matches!(next.kind, MoveKind::Wait(_)) => "a wait",
+            (Some(one), Some(other)) if one != other => "a move of another tip",
+            _ => continue,
+        };
+        let problem = format!(
+            "its blend of {} m leads into {}, {what_follows}, before which the arm stops: give no blend",
+            each.blend,
+            next.named(i + 1)
+        );
+        return Err(Error::InvalidMove { what: each.named(i), problem: problem.into() });
     }
     Ok(())
 }

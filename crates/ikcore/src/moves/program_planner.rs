@@ -3,24 +3,23 @@
 use super::around::MoveSurroundings;
 use super::assembly::Assembly;
 use super::climber::Climber;
-use super::ladder::{Ladder, blocks};
-use super::move_task::MoveTask;
+use super::ladder::Ladder;
+use super::ladder_block::blocks;
 use super::moves_options::MovesOptions;
+use super::moving_tip::MovingTip;
 use super::outline::outline;
 use super::program::Move;
 use crate::error::Result;
 use crate::ik::SolveOptions;
-use crate::obstacle::Clearance;
+use crate::obstacle::{Clearance, Surroundings};
 use crate::plan::{Cost, Plan};
-use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
 
-/// A checked program.
+/// A checked program, and what each tip must meet.
 #[derive(Clone, Copy)]
 pub(super) struct ProgramPlanner<'a> {
     pub around: MoveSurroundings<'a>,
-    /// The robot with the tool of the task.
-    pub robot: &'a Robot,
+    pub tips: &'a [MovingTip<'a>],
     pub moves: &'a [Move],
     pub start: &'a [f64],
     pub options: &'a MovesOptions,
@@ -29,30 +28,27 @@ pub(super) struct ProgramPlanner<'a> {
 }
 
 impl ProgramPlanner<'_> {
-    /// Plans the motion whose moves meet `task`.
+    /// Plans the motion.
     ///
     /// # Errors
     /// As [`plan_moves`](super::plan_moves()).
-    pub fn plan(&self, task: &MoveTask, monitor: &mut dyn Monitor) -> Result<Plan> {
-        let Self { around, robot, moves, start, options, explains } = *self;
+    pub fn plan(&self, monitor: &mut dyn Monitor) -> Result<Plan> {
+        let Self { around, tips, moves, start, options, explains } = *self;
         let limits = around.limits;
-        let stages = outline(robot, moves, start, task)?;
-        let blocks = blocks(&stages, moves);
-        let each = SolveOptions {
-            limits: Some(limits.position_limits(around.robot)?),
-            surroundings: options.surroundings.clone(),
-            seed: options.seed,
-            ..SolveOptions::default()
-        };
-        let mut ladder = Ladder::new(around, (robot, *task), each.clone());
-        let each = SolveOptions { task: task.searched(), ..each };
-        let climber = Climber { robot, limits, moves, blocks: &blocks, each, explains };
+        let stages = outline(tips, moves, start)?;
+        let blocks = blocks(tips, &stages, moves, start);
+        let searches = tips.iter().map(|tip| self.search(tip)).collect::<Result<Vec<_>>>()?;
+        let mut ladder = Ladder::new(around, tips, &searches);
+        let of_task =
+            |(tip, each): (&MovingTip<'_>, &SolveOptions)| SolveOptions { task: tip.task.searched(), ..each.clone() };
+        let searches = tips.iter().zip(&searches).map(of_task).collect();
+        let climber = Climber { tips, limits, moves, blocks: &blocks, searches, explains };
         let rungs = match ladder.climb(&blocks, start, monitor)? {
             Ok(rungs) => rungs,
             Err((block, dead)) => return Err(climber.no_way(block, dead, monitor)?),
         };
         let paths = climber.refined(&mut ladder, &rungs, monitor)?;
-        let mut assembly = Assembly::new(around, (robot, *task), moves, options, start);
+        let mut assembly = Assembly::new(around, tips, moves, options, start);
         assembly.add_all(&stages, &rungs, paths, monitor)?;
         let (trajectory, reports) = assembly.finish()?;
         let duration = trajectory.duration();
@@ -71,5 +67,17 @@ impl ProgramPlanner<'_> {
             plan.status = Status::Stalled;
         }
         Ok(plan)
+    }
+
+    /// Options of searches for configurations of a tip. What several tips keep clear of is for the ladder, which knows all joints.
+    fn search(&self, tip: &MovingTip<'_>) -> Result<SolveOptions> {
+        let surroundings =
+            if self.tips.len() == 1 { self.options.surroundings.clone() } else { Surroundings::default() };
+        Ok(SolveOptions {
+            limits: Some(tip.solved_limits(self.around.limits)?),
+            surroundings,
+            seed: self.options.seed,
+            ..SolveOptions::default()
+        })
     }
 }

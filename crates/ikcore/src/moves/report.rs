@@ -1,12 +1,12 @@
 //! What slows the tip on a move, and when.
 
+use super::moving_tip::MovingTip;
 use super::timing::PathTime;
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::math::Columns;
 use crate::math::so3::norm;
 use crate::plan::SpeedBound;
-use crate::robot::Robot;
 use crate::timing::{ConstantLimits, OneLimit};
 use crate::trajectory::Trajectory;
 
@@ -77,21 +77,23 @@ fn tightest(motion: &Trajectory, t: f64, limits: &ConstantLimits, before: Option
     before.filter(|before| share(*before) >= STILL * most).unwrap_or(tightest)
 }
 
-/// Largest speed of the tip along a joint move (m/s), between these times of a motion (s).
+/// Largest speed of any of these tips along a joint move (m/s), between these times of a motion (s).
 ///
 /// # Errors
 /// None in practice: the joints are those of the robot.
-pub(super) fn tip_speed(robot: &Robot, motion: &Trajectory, [start, end]: [f64; 2]) -> Result<f64> {
-    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; robot.dof()]);
+pub(super) fn tip_speed(tips: &[MovingTip<'_>], motion: &Trajectory, [start, end]: [f64; 2]) -> Result<f64> {
+    let [mut q, mut qd, mut qdd] = [(); 3].map(|()| vec![0.0; motion.joints().len()]);
     let mut columns = Columns::default();
     let mut largest: f64 = 0.0;
     for ends in motion.knots().windows(2) {
         for t in [ends[0], 0.5 * (ends[0] + ends[1])].into_iter().filter(|t| start <= *t && *t <= end) {
             motion.at(t, &mut q, &mut qd, &mut qdd)?;
-            robot.tip_and_jacobian(&q, &mut columns);
-            let speed =
-                [0, 1, 2].map(|k| qd.iter().zip(columns.iter()).map(|(qd, column)| qd * column[k]).sum::<f64>());
-            largest = largest.max(norm(&speed));
+            for tip in tips {
+                tip.frame_and_jacobian(&q, &mut columns);
+                let speed =
+                    [0, 1, 2].map(|k| qd.iter().zip(columns.iter()).map(|(qd, column)| qd * column[k]).sum::<f64>());
+                largest = largest.max(norm(&speed));
+            }
         }
     }
     Ok(largest)

@@ -1,13 +1,13 @@
 //! What the arm does from one stop to the next: joint moves and paths of the tip, joined by rounded corners.
 
 use super::joint_corner::JointCorner;
-use super::move_task::{MoveTask, TURN_ACCURACY};
+use super::move_task::TURN_ACCURACY;
+use super::moving_tip::MovingTip;
 use super::tool_path::ToolPath;
 use crate::error::Result;
 use crate::math::cubic_spline::SplineEnds;
 use crate::math::vector::distance;
 use crate::objective::Point;
-use crate::robot::Robot;
 use crate::timing::{ConstantLimits, JointPath};
 
 /// Intervals of a corner at first, and the most.
@@ -29,6 +29,8 @@ const NOTHING: f64 = 1e-9;
 pub(super) struct RunPart<'a> {
     /// Index of its move, of the first for a path of the tip.
     pub index: usize,
+    /// The tips that it leads.
+    pub tips: &'a [MovingTip<'a>],
     /// The path of the tip; `None` for a joint move.
     pub tool_path: Option<&'a ToolPath>,
     /// The joint path.
@@ -68,13 +70,12 @@ impl<'a> Run<'a> {
         Self { parts: vec![part], windows: vec![Window { begin: from, from, to }], path }
     }
 
-    /// The run of several parts, whose corners are rounded within `radii` (m); `None` where that is not found.
+    /// The run of several parts of a robot with `all` these tips, whose corners are rounded within `radii` (m); `None` where that is not found.
     ///
     /// # Errors
     /// None in practice: the parts differ.
     pub fn rounded(
-        robot: &Robot,
-        task: &MoveTask,
+        all: &[MovingTip<'_>],
         limits: &ConstantLimits,
         parts: &[RunPart<'a>],
         radii: &[f64],
@@ -83,9 +84,11 @@ impl<'a> Run<'a> {
         let mut corners = vec![];
         for (i, radius) in radii.iter().enumerate() {
             let paths = [&parts[i].path, &parts[i + 1].path];
+            // A joint move to a configuration leads all tips; the radius is about the one that the other move leads.
+            let tips = if parts[i].tips.len() < parts[i + 1].tips.len() { parts[i].tips } else { parts[i + 1].tips };
             let first = if i > 0 { middle(paths[0]) } else { paths[0].breaks()[0] };
             let last = if i + 1 < radii.len() { middle(paths[1]) } else { paths[1].breaks()[paths[1].pieces()] };
-            let Some(corner) = JointCorner::between(robot, limits, paths, [first, last], *radius) else {
+            let Some(corner) = JointCorner::between(tips, limits, paths, [first, last], *radius) else {
                 return Ok(None);
             };
             corners.push(corner);
@@ -94,7 +97,7 @@ impl<'a> Run<'a> {
         while intervals <= MOST_INTERVALS {
             let mut run = Self::through(parts, &corners, intervals)?;
             run.path = run.path.inside(&limits.lower, &limits.upper);
-            if run.is_accurate(robot, task) {
+            if run.is_accurate(all) {
                 return Ok(Some(run));
             }
             intervals *= 2;
@@ -150,11 +153,12 @@ impl<'a> Run<'a> {
         Ok(Self { parts: parts.to_vec(), windows, path: path.with_speeds(speeds) })
     }
 
-    /// Whether the tip stays on its paths between knots.
-    fn is_accurate(&self, robot: &Robot, task: &MoveTask) -> bool {
-        let mut q = Point::from_elem(0.0, robot.dof());
+    /// Whether the tip stays on its paths between knots, and others where they are.
+    fn is_accurate(&self, all: &[MovingTip<'_>]) -> bool {
+        let mut q = Point::from_elem(0.0, self.path.joints().len());
+        let mut due_q = q.clone();
         self.parts.iter().zip(&self.windows).all(|(part, window)| {
-            let Some(tool_path) = part.tool_path else { return true };
+            let (Some(tool_path), [tip, ..]) = (part.tool_path, part.tips) else { return true };
             self.path.breaks().windows(2).all(|ends| {
                 let s = 0.5 * (ends[0] + ends[1]);
                 if s < window.begin || s > window.end() {
@@ -162,14 +166,22 @@ impl<'a> Run<'a> {
                 }
                 self.path.position(s, &mut q);
                 let at = window.from + s - window.begin;
+                let mut others = all.iter().filter(|other| other.number != tip.number);
+                let stays = |other: &MovingTip<'_>| {
+                    part.path.position(at, &mut due_q);
+                    distance(&other.position(&q), &other.position(&due_q)) <= ACCURACY
+                };
+                if !others.all(stays) {
+                    return false;
+                }
                 let has_speed = tool_path.pieces[tool_path.piece_at(at)].speed.is_some();
                 let by_slope = if has_speed { SLOPE_ACCURACY * (ends[1] - ends[0]) } else { ACCURACY };
                 let most = by_slope.clamp(NOTHING, ACCURACY);
                 let due = tool_path.pose(at);
-                if task.is_whole() {
-                    return distance(&robot.tip_position(&q), &due.origin) <= most;
+                if tip.task.is_whole() {
+                    return distance(&tip.position(&q), &due.origin) <= most;
                 }
-                let [distance, angle] = task.target(&due).off(&robot.tip(&q));
+                let [distance, angle] = tip.task.target(&due).off(&tip.frame(&q));
                 distance <= most && angle <= TURN_ACCURACY
             })
         })

@@ -64,6 +64,8 @@ impl ToolPiece {
 /// The path of the tip from one stop to the next.
 #[derive(Debug, Clone)]
 pub(super) struct ToolPath {
+    /// Number of the tip.
+    pub tip: usize,
     /// Its parts, in order.
     pub pieces: Vec<ToolPiece>,
     /// Length from the start to the begin of each piece, and the whole length (m).
@@ -71,11 +73,11 @@ pub(super) struct ToolPath {
 }
 
 impl ToolPath {
-    /// The path along `legs`; `moves` is the whole program, of whose blends all but the last leg's count.
+    /// The path of tip number `tip` along `legs`; `moves` is the whole program, of whose blends all but the last leg's count.
     ///
     /// # Errors
     /// [`Error::InvalidMove`] for blends that do not fit.
-    pub fn along(legs: Vec<Leg>, moves: &[Move]) -> Result<Self> {
+    pub fn along(tip: usize, legs: Vec<Leg>, moves: &[Move]) -> Result<Self> {
         let mut pieces = Vec::with_capacity(2 * legs.len());
         let mut entered = 0.0;
         for (i, leg) in legs.iter().enumerate() {
@@ -103,7 +105,7 @@ impl ToolPath {
         for piece in &pieces {
             breaks.push(breaks[breaks.len() - 1] + piece.length);
         }
-        Ok(Self { pieces, breaks })
+        Ok(Self { tip, pieces, breaks })
     }
 
     /// Whole length (m).

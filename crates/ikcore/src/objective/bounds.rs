@@ -64,6 +64,12 @@ impl Bounds {
         self
     }
 
+    /// Holds one entry at a value.
+    pub(crate) fn hold(&mut self, entry: usize, value: f64) {
+        self.lower[entry] = value;
+        self.upper[entry] = value;
+    }
+
     /// The box with these weights of the joints.
     pub(crate) fn weighted(self, weights: Option<Arc<JointWeights>>) -> Self {
         Self { weights, ..self }

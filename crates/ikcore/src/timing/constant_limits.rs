@@ -305,8 +305,7 @@ impl ConstantLimits {
     /// # Errors
     /// None in practice: the limits were checked.
     pub(crate) fn position_limits(&self, robot: &Robot) -> Result<Limits> {
-        let constant = |values: &[f64]| values.iter().map(|value| Profile::Constant(*value)).collect();
-        Limits::of(robot).replace(Field::Lower, constant(&self.lower))?.replace(Field::Upper, constant(&self.upper))
+        Limits::of(robot).with_positions(&self.lower, &self.upper)
     }
 
     /// Checks that every joint has a velocity, acceleration or jerk limit; without one a motion would take no time.

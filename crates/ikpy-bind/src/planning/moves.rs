@@ -3,6 +3,7 @@
 use ikcore::planning::{JointGoal, Move, MoveKind};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::convert::{array, copied, point, pose_array, rigid, rigid_rows, shape_text, summary};
 use crate::error::{invalid, raise};
@@ -32,6 +33,12 @@ impl PyMove {
         self.core.blend
     }
 
+    /// The tip that the move leads, of a robot with several, or None.
+    #[getter]
+    fn tip(&self) -> Option<&str> {
+        self.core.tip.as_deref()
+    }
+
     /// Name in messages and reports, or None.
     #[getter]
     fn name(&self) -> Option<&str> {
@@ -39,7 +46,7 @@ impl PyMove {
     }
 
     fn __repr__(&self) -> String {
-        let Move { kind, blend, name } = &self.core;
+        let Move { kind, blend, tip, name } = &self.core;
         let mut rest = vec![];
         let kind = match kind {
             MoveKind::Joints(JointGoal::Configuration(q)) => format!("Joints({}", list_text(q)),
@@ -60,6 +67,7 @@ impl PyMove {
         if *blend > 0.0 {
             rest.push(format!("blend={}", blend.text()));
         }
+        rest.extend(tip.as_ref().map(|tip| format!("tip='{tip}'")));
         rest.extend(name.as_ref().map(|name| format!("name='{name}'")));
         let rest: String = rest.iter().map(|given| format!(", {given}")).collect();
         format!("moves.{kind}{rest})")
@@ -74,14 +82,21 @@ fn place(position: &[f64; 3]) -> String {
     list_text(position)
 }
 
+/// Refuses a dict of poses by tip, as other calls take them.
+fn of_one_tip<'a, 'py>(what: &str, value: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyAny>> {
+    let Ok(dict) = value.cast::<PyDict>() else { return Ok(value) };
+    let first = dict.keys().iter().next().and_then(|key| key.extract::<String>().ok()).unwrap_or_else(|| "left".into());
+    Err(invalid(format!("{what}: a move leads one tip, got a dict: give its pose, and its name as tip='{first}'")))
+}
+
 /// Makes a move, which is checked as far as it can be without a robot.
 fn made<T: pyo3::PyClass<BaseType = PyMove>>(
     kind: MoveKind,
     blend: f64,
-    name: Option<&str>,
+    [tip, name]: [Option<&str>; 2],
     class: T,
 ) -> PyResult<PyClassInitializer<T>> {
-    let core = Move { kind, blend, name: name.map(str::to_owned) };
+    let core = Move { kind, blend, tip: tip.map(str::to_owned), name: name.map(str::to_owned) };
     core.validate().map_err(raise)?;
     Ok(PyClassInitializer::from(PyMove { core }).add_subclass(class))
 }
@@ -91,23 +106,25 @@ fn made<T: pyo3::PyClass<BaseType = PyMove>>(
 /// Args:
 ///     q_or_pose: joint positions (n,) (rad, m), or a pose (4, 4) of the tip, whose configuration the planner chooses.
 ///     blend: radius (m) about the end inside which the motion may round the corner to the next move; 0: it stops there.
+///     tip: name of the tip that is led to a pose, of a robot with several; joints that move another tip too stay where they are.
 ///     name: name in messages and reports.
 ///
 /// Raises:
-///     InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero.
+///     InvalidInputError: q_or_pose of another shape, NaN, or no rigid transform; a blend below zero; a tip with joint positions.
 #[pyclass(name = "Joints", module = "beetle_ik.moves", extends = PyMove, frozen)]
 pub struct PyJoints;
 
 #[pymethods]
 impl PyJoints {
     #[new]
-    #[pyo3(signature = (q_or_pose, *, blend=0.0, name=None))]
+    #[pyo3(signature = (q_or_pose, *, blend=0.0, tip=None, name=None))]
     fn new(
         q_or_pose: &Bound<'_, PyAny>,
         blend: f64,
+        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let numbers = array("q_or_pose", q_or_pose)?;
+        let numbers = array("q_or_pose", of_one_tip("q_or_pose", q_or_pose)?)?;
         let goal = match numbers.shape() {
             [_] => JointGoal::Configuration(numbers.as_slice()?.to_vec()),
             [4, 4] => JointGoal::Pose(rigid_rows("q_or_pose", numbers.as_slice()?)?),
@@ -118,7 +135,7 @@ impl PyJoints {
                 )));
             }
         };
-        made(MoveKind::Joints(goal), blend, name, Self)
+        made(MoveKind::Joints(goal), blend, [tip, name], Self)
     }
 
     /// Joint positions at the end (n,), or the pose of the tip (4, 4).
@@ -135,7 +152,7 @@ impl PyJoints {
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
-        keywords(slf, &["q_or_pose", "blend", "name"])
+        keywords(slf, &["q_or_pose", "blend", "tip", "name"])
     }
 }
 
@@ -146,6 +163,7 @@ impl PyJoints {
 ///     speed: speed of the tip (m/s), kept between the blends wherever the limits allow; a turn on the spot counts 0.1 m for
 ///         each radian. None: as fast as the limits allow.
 ///     blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
+///     tip: name of the tip, of a robot with several; joints that move another tip too stay where they are.
 ///     name: name in messages and reports.
 ///
 /// Raises:
@@ -156,14 +174,15 @@ pub struct PyLine;
 #[pymethods]
 impl PyLine {
     #[new]
-    #[pyo3(signature = (pose, *, speed=None, blend=0.0, name=None))]
+    #[pyo3(signature = (pose, *, speed=None, blend=0.0, tip=None, name=None))]
     fn new(
         pose: &Bound<'_, PyAny>,
         speed: Option<f64>,
         blend: f64,
+        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        made(MoveKind::Line { pose: rigid("pose", pose)?, speed }, blend, name, Self)
+        made(MoveKind::Line { pose: rigid("pose", of_one_tip("pose", pose)?)?, speed }, blend, [tip, name], Self)
     }
 
     /// Pose of the tip at the end (4, 4).
@@ -179,7 +198,7 @@ impl PyLine {
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
-        keywords(slf, &["pose", "speed", "blend", "name"])
+        keywords(slf, &["pose", "speed", "blend", "tip", "name"])
     }
 }
 
@@ -192,6 +211,7 @@ impl PyLine {
 ///     blend: radius (m) about the end inside which the motion may round the corner to the next line or arc; 0: it stops there.
 ///     angle: angle (rad) after which the arc ends, on the circle through its start, `via` and the position of `pose`, with
 ///         the orientation of `pose`; 2 pi is a full circle. None: it ends at `pose`.
+///     tip: name of the tip, of a robot with several; joints that move another tip too stay where they are.
 ///     name: name in messages and reports.
 ///
 /// Raises:
@@ -203,20 +223,26 @@ pub struct PyArc;
 #[pymethods]
 impl PyArc {
     #[new]
-    #[pyo3(signature = (via, pose, *, speed=None, blend=0.0, angle=None, name=None))]
+    #[pyo3(signature = (via, pose, *, speed=None, blend=0.0, angle=None, tip=None, name=None))]
     fn new(
         via: &Bound<'_, PyAny>,
         pose: &Bound<'_, PyAny>,
         speed: Option<f64>,
         blend: f64,
         angle: Option<f64>,
+        #[pyo3(from_py_with = crate::convert::optional_text)] tip: Option<&str>,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let via = match array("via", via)?.shape() {
             [4, 4] => rigid("via", via)?.translation.vector.into(),
             _ => point("via", via)?,
         };
-        made(MoveKind::Arc { via, pose: rigid("pose", pose)?, angle, speed }, blend, name, Self)
+        made(
+            MoveKind::Arc { via, pose: rigid("pose", of_one_tip("pose", pose)?)?, angle, speed },
+            blend,
+            [tip, name],
+            Self,
+        )
     }
 
     /// Point that the arc passes through (3,) (m).
@@ -250,7 +276,7 @@ impl PyArc {
     }
 
     fn __getnewargs_ex__<'py>(slf: &Bound<'py, Self>) -> PyResult<NewArguments<'py>> {
-        keywords(slf, &["via", "pose", "speed", "blend", "angle", "name"])
+        keywords(slf, &["via", "pose", "speed", "blend", "angle", "tip", "name"])
     }
 }
 
@@ -273,7 +299,7 @@ impl PyWait {
         seconds: f64,
         #[pyo3(from_py_with = crate::convert::optional_text)] name: Option<&str>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        made(MoveKind::Wait(seconds), 0.0, name, Self)
+        made(MoveKind::Wait(seconds), 0.0, [None, name], Self)
     }
 
     /// How long (s).

@@ -16,7 +16,7 @@ use crate::obstacle::GivenObstacles;
 use crate::python_calls;
 use crate::robot::PyRobot;
 use crate::solver::PyStop;
-use crate::task::read_task;
+use crate::tips::read_tip_tasks;
 use crate::units::doubt;
 use crate::wording::said;
 
@@ -30,12 +30,13 @@ use crate::wording::said;
 /// certified between samples too.
 ///
 /// Args:
-///     robot: the arm.
+///     robot: the arm, or a robot with several tips, of which each move to a pose names one. That tip is led by the joints that move
+///         no other one, so that all others stay where they are.
 ///     moves: the program, a sequence of `moves.Joints`, `moves.Line`, `moves.Arc` and `moves.Wait`. Messages count them from 0.
 ///     start_q: joint positions (n,) at the start.
 ///     task: what lines, arcs and joint moves to poses must meet of their poses, one of `tasks`, with a tool if needed: free spin about
 ///         an axis of the tip with `tasks.Pointing`, positions alone, or orientations within tolerances. Positions stay on the lines and
-///         arcs whatever their tolerance. None: whole poses.
+///         arcs whatever their tolerance. None: whole poses. For a robot with several tips one task for all of them, or a dict by tip.
 ///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
@@ -52,7 +53,9 @@ use crate::wording::said;
 ///     InvalidInputError: wrong shape or NaN; a program without moves or one that takes no time; a speed that is not positive, an
 ///         arc whose points are on a line, a blend that does not fit, and a move that the arm cannot make, or not without a
 ///         collision, each by the name of the move; a start or joint positions in collision; obstacles and a robot without
-///         bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to.
+///         bodies; a task that leaves a part of the position free, has a region or an order, or a tolerance that no path is kept to; a
+///         move that names no tip of several, or one that no joint moves alone, and a blend from one tip to another.
+///     UnknownNameError: a tip that the robot has not.
 ///     LimitError: limits that contradict each other; a start or joint positions outside them.
 ///     UnsupportedLimit: limits that vary in time, or no acceleration limits.
 ///
@@ -91,8 +94,10 @@ pub fn plan_moves(
     let start = joint_vector(&arm, "start_q", start_q)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
+    let (task, tip_tasks) = read_tip_tasks(robot.get(), task)?;
     let options = MovesOptions {
-        task: read_task(task)?,
+        task,
+        tip_tasks,
         surroundings: Surroundings { obstacles: obstacles.map(|_| given.core), margin, self_collision },
         keeps: read_keeps(robot.get(), keep)?,
         limits: resolved,

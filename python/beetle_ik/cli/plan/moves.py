@@ -23,7 +23,7 @@ from ..options import (
     RobotName,
     SceneFile,
     Seed,
-    TipLink,
+    TipLinks,
     TipSpeed,
     TorqueLimits,
     Trusted,
@@ -37,9 +37,9 @@ from .planned import Animated, Budget, Out, options, report
 
 _POSE = 6
 _KEYS: dict[str, tuple[set[str], set[str]]] = {
-    "joints": ({"to"}, {"blend", "name"}),
-    "line": ({"to"}, {"speed", "blend", "name"}),
-    "arc": ({"via", "to"}, {"speed", "blend", "angle", "name"}),
+    "joints": ({"to"}, {"blend", "tip", "name"}),
+    "line": ({"to"}, {"speed", "blend", "tip", "name"}),
+    "arc": ({"via", "to"}, {"speed", "blend", "angle", "tip", "name"}),
     "wait": ({"seconds"}, {"name"}),
 }
 _MOVES: dict[str, Callable[..., Move]] = {"joints": Joints, "line": Line, "arc": Arc, "wait": Wait}
@@ -60,7 +60,7 @@ class Program:
     """Moves, and what they must meet of their poses."""
 
     moves: list[Move]
-    task: Task | None = None
+    task: Task | dict[str, Task] | None = None
 
 
 def moves(
@@ -88,7 +88,7 @@ def moves(
     out: Out = None,
     animation: Animated = False,
     urdf: UrdfFile = None,
-    tip: TipLink = None,
+    tip: TipLinks = None,
     base: BaseLink = None,
     trusted: Trusted = False,
     as_json: AsJson = False,
@@ -97,7 +97,8 @@ def moves(
 
     Poses are six numbers, x, y, z (m), roll, pitch, yaw (rad); "to" of a joint move is a pose, or {"q": [...]}, joint
     positions; "via" of an arc is a point. A task says what of the poses counts: its kind is pose, position or pointing,
-    with "weights", "tolerance", "tool" (six numbers) and "axis" as for `beetle_ik.tasks`.
+    with "weights", "tolerance", "tool" (six numbers) and "axis" as for `beetle_ik.tasks`. With several tips each move
+    to a pose names its "tip", and there may be a task for each: {"left": {"kind": "position"}}.
     """
     arm, torque = loaded(load_robot(robot, urdf, base, tip, link_radius, trusted=trusted), payload, torque_limits)
     read = read_program(program)
@@ -134,11 +135,18 @@ def read_program(file: Path) -> Program:
         if "moves" not in given:
             raise InvalidInputError(f"{file}: a program needs 'moves', a list; it may have a 'task'")
         _allow(f"{file}", "program", given, {"moves", "task"})
-        task = _task(f"{file}: task", given["task"]) if "task" in given else None
+        task = _tasks(f"{file}: task", given["task"]) if "task" in given else None
         given = given["moves"]
     if not isinstance(given, list):
         raise InvalidInputError(f"{file}: expected a list of moves, got {type(given).__name__}")
     return Program([_move(f"{file}: move {i}", each) for i, each in enumerate(given)], task)
+
+
+def _tasks(where: str, given: Any) -> Task | dict[str, Task]:
+    """Returns the task of an object that has a kind, or the tasks of one that has an object for each of some tips."""
+    if isinstance(given, dict) and given and all(isinstance(each, dict) for each in given.values()):
+        return {tip: _task(f"{where} of '{tip}'", each) for tip, each in given.items()}
+    return _task(where, given)
 
 
 def _task(where: str, given: Any) -> Task:
@@ -176,8 +184,8 @@ def _move(where: str, given: Any) -> Move:
         raise InvalidInputError(f"{where}: a {kind} needs '{key}'")
     _allow(where, kind, rest, needed | allowed)
     for key, value in rest.items():
-        if key == "name" and not isinstance(value, str):
-            raise InvalidInputError(f"{where}: 'name' must be a text, got {value!r}")
+        if key in ("name", "tip") and not isinstance(value, str):
+            raise InvalidInputError(f"{where}: '{key}' must be a text, got {value!r}")
         if key in ("speed", "blend", "angle", "seconds"):
             _number(where, key, value)
     if "via" in rest:

@@ -22,13 +22,19 @@ pub(crate) struct PathTarget {
 impl PathTarget {
     /// Writes residual and Jacobian at `q` of the excess over the tolerance band; returns the sum of squares.
     pub fn linearize(&self, robot: &Robot, q: &[f64], borders: &mut Borders, out: &mut Linearization) -> f64 {
+        let tip = robot.tip_and_jacobian(q, &mut out.first.columns);
+        self.linearize_tip(&tip, q.len(), borders, out)
+    }
+
+    /// Linearizes like [`linearize`](Self::linearize), from a tip and its geometric Jacobian of `dof` columns, which are in `out`.
+    pub fn linearize_tip(&self, tip: &Frame, dof: usize, borders: &mut Borders, out: &mut Linearization) -> f64 {
         let criterion = self.tolerance_band.map_or_else(|| Tolerance::default().into(), |_| ToleranceBand::criterion());
-        let value = self.target.linearize(robot, q, &criterion, &mut out.first).score.value;
+        let value = self.target.linearize_tip(tip, dof, &criterion, &mut out.first).score.value;
         match (&self.tolerance_band, &self.displacement) {
             (None, _) => value,
-            (Some(tolerance_band), None) => tolerance_band.reduce(&self.target, borders, q.len(), &mut out.first),
+            (Some(tolerance_band), None) => tolerance_band.reduce(&self.target, borders, dof, &mut out.first),
             (Some(tolerance_band), Some(displacement)) => {
-                tolerance_band.hold(&self.target, displacement, q.len(), &mut out.first)
+                tolerance_band.hold(&self.target, displacement, dof, &mut out.first)
             }
         }
     }

@@ -44,20 +44,11 @@ const NEAR_LIMITS: f64 = 0.2;
 /// Largest excess over the limits (rad) of a seed, which is moved inside.
 const SLACK: f64 = 0.5;
 
-/// Largest 1 - cos(angle) above the least of the scan at which a seed may lead to the least: exact solutions, and those of a tip off
-/// the last axis.
-const WORSE: [f64; 2] = [0.1, 0.3];
-
 /// Difference of the angles (rad) of two seeds that lead to the same optimum.
 const SAME: f64 = 1e-4;
 
-/// What a descent may gain beyond a seed: the error of the parabola at its vertex, or the slope at the end of a column, times the first;
-/// at any end, and for a tip off the last axis, the second too.
-const RESERVE: f64 = 1.5;
+/// What a descent may gain beyond a seed of arms with parallel axes in the middle, at least.
 const LEAST_RESERVE: f64 = 0.02;
-
-/// The same from the end of a branch between two values of the scan.
-const BETWEEN: f64 = 0.3;
 
 /// Values of one joint (rad).
 type Values = SmallVec<[f64; VALUES]>;
@@ -198,12 +189,11 @@ impl PositionArm {
             let firsts: SmallVec<[ScanFrom<'_>; TURNS]> = turns.map(|turn| ScanFrom::Turn(Angle::by(turn))).collect();
             minima = self.minima(goal, &values, &firsts);
         }
-        let least = minima.first().map_or(0.0, |minimum| minimum.sample.value);
-        let worse = WORSE[usize::from(place != TipPlace::OnAxis)];
         let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
-        let may_win = |minimum: &&ScanMinimum| minimum.sample.value - gain_beside(minimum, spacing) <= least + worse;
-        for minimum in minima.iter().filter(may_win) {
-            let Some(seed) = self.seed(goal, minimum, spacing, place) else { continue };
+        for minimum in &minima {
+            let sample = self.refined(goal, minimum, spacing, place);
+            // Past a fold of its branch, which may lie between two values, a descent gains much: each may lead to the least.
+            let Some(seed) = self.inside(goal, &sample, f64::NEG_INFINITY) else { continue };
             if !found.iter().any(|other| self.are_same(&seed, other)) {
                 found.push(seed);
             }
@@ -213,7 +203,6 @@ impl PositionArm {
     /// Least values of the scan, the least of all first.
     fn minima(&self, goal: &PositionGoal<'_>, values: &[f64], firsts: &[ScanFrom<'_>]) -> Minima {
         let mut scan = Scan::new(firsts.len());
-        let spacing = if values.len() > 1 { values[1] - values[0] } else { 0.0 };
         for value in values {
             let fourth = self.fourth(*value);
             for (number, first) in firsts.iter().enumerate() {
@@ -221,11 +210,10 @@ impl PositionArm {
             }
             scan.end_row(*value);
         }
-        scan.end();
         if let [first @ ScanFrom::OnAxis] = firsts {
             self.visit_limits(goal.limits, |given| self.visit(goal, given, first, |sample| scan.add_end(sample)));
         }
-        scan.finish(spacing)
+        scan.finish()
     }
 
     /// Values of the fourth joint (rad).
@@ -253,12 +241,6 @@ impl PositionArm {
         }
     }
 
-    /// Seed at a minimum of the scan, inside the limits; `None` too far outside them.
-    fn seed(&self, goal: &PositionGoal<'_>, minimum: &ScanMinimum, spacing: f64, place: TipPlace) -> Option<Seed> {
-        let (sample, least) = self.refined(goal, minimum, spacing, place);
-        self.inside(goal, &sample, least)
-    }
-
     /// Seed at a sample, inside the limits; `None` too far outside them.
     fn inside(&self, goal: &PositionGoal<'_>, sample: &ScanSample, least: f64) -> Option<Seed> {
         let mut q = [0.0; MOST_JOINTS];
@@ -272,31 +254,14 @@ impl PositionArm {
         Some(Seed { q, value: sample.value, least })
     }
 
-    /// Solution near the vertex at a minimum of the scan, and the least value that is expected nearby.
-    fn refined(
-        &self,
-        goal: &PositionGoal<'_>,
-        minimum: &ScanMinimum,
-        spacing: f64,
-        place: TipPlace,
-    ) -> (ScanSample, f64) {
-        let ScanMinimum { sample, is_at_end, fourth, is_between, .. } = minimum;
-        if *is_between {
-            return (*sample, sample.value - gain_beside(minimum, spacing));
-        }
-        let vertex = minimum.vertex(spacing);
-        let nearby = self.solution_near(goal, sample, vertex.map_or(*fourth, |[fourth, _]| fourth), place);
-        let best = match nearby {
+    /// Solution near the vertex at a minimum of the scan.
+    fn refined(&self, goal: &PositionGoal<'_>, minimum: &ScanMinimum, spacing: f64, place: TipPlace) -> ScanSample {
+        let sample = &minimum.sample;
+        let Some(fourth) = minimum.vertex(spacing) else { return *sample };
+        match self.solution_near(goal, sample, fourth, place) {
             Some(nearby) if place != TipPlace::OnAxis || nearby.value <= sample.value => nearby,
             _ => *sample,
-        };
-        let reserve = match (vertex, nearby, place) {
-            (Some([_, least]), Some(nearby), TipPlace::OnAxis) => RESERVE * (nearby.value - least).abs(),
-            (Some([_, least]), Some(nearby), _) => RESERVE * (nearby.value - least).abs() + LEAST_RESERVE,
-            _ if *is_at_end => LEAST_RESERVE,
-            _ => gain_beside(minimum, spacing) + LEAST_RESERVE,
-        };
-        (best, best.value - reserve)
+        }
     }
 
     /// Solution at this value of the fourth joint that is most like `sample`.
@@ -325,15 +290,6 @@ impl PositionArm {
     /// Whether two seeds lead to the same optimum.
     fn are_same(&self, a: &Seed, b: &Seed) -> bool {
         (0..self.count).all(|j| (a.q[j] - b.q[j]).abs() < SAME)
-    }
-}
-
-/// What a descent from a minimum where a column begins or ends may gain beyond it, where no column goes.
-fn gain_beside(minimum: &ScanMinimum, spacing: f64) -> f64 {
-    match minimum.vertex(spacing) {
-        _ if minimum.is_between => BETWEEN,
-        Some(_) => 0.0,
-        None => RESERVE * (minimum.beside[0].min(minimum.beside[1]) - minimum.sample.value),
     }
 }
 

@@ -8,16 +8,13 @@ use crate::closed_form::angle::Angle;
 pub const MOST: usize = 5;
 
 /// Largest number of seeds.
-pub(crate) const SEEDS: usize = 8;
+pub(crate) const SEEDS: usize = 16;
 
 /// Solutions for each value of the scan and each turn that the fifth joint begins with.
 pub const BRANCHES: usize = 4;
 
 /// Sum of three cosines below which two samples do not follow each other while others are more alike.
 const LEAST_ALIKE: f64 = 2.5;
-
-/// The same of the last sample of a column and the end of its branch.
-const LEAST_ALIKE_NEAR: f64 = 2.85;
 
 /// Sum of three cosines of a sample and an empty column.
 const UNLIKE: f64 = -4.0;
@@ -40,10 +37,6 @@ pub struct ScanMinimum {
     pub fourth: f64,
     /// Values of the samples before and after; infinite where the column begins or ends.
     pub beside: [f64; 2],
-    /// Whether the fourth joint is at the end of its values.
-    pub is_at_end: bool,
-    /// Whether it is an end of a branch that no value of the scan lies on.
-    pub is_between: bool,
 }
 
 /// Least values of a scan.
@@ -62,14 +55,9 @@ pub struct Scan {
     columns: SmallVec<[Column; 2 * BRANCHES]>,
     /// Value of the fourth joint of the row before the one under way.
     fourth: f64,
-    rows: usize,
     /// Solutions of the row under way, with the numbers of their turns.
     now: SmallVec<[(usize, ScanSample); 2 * BRANCHES]>,
     found: Minima,
-    /// Where columns begin and end.
-    ends: SmallVec<[ScanSample; 4 * BRANCHES]>,
-    /// Ends of branches that limits cut off.
-    cut: SmallVec<[ScanSample; 4 * BRANCHES]>,
 }
 
 impl ScanSample {
@@ -82,15 +70,7 @@ impl Scan {
     pub fn new(turns: usize) -> Self {
         let column = Column { before: f64::INFINITY, here: ScanSample::NONE, next: ScanSample::NONE };
         let columns = SmallVec::from_elem(column, turns * BRANCHES);
-        Self {
-            columns,
-            fourth: 0.0,
-            rows: 0,
-            now: SmallVec::new(),
-            found: Minima::new(),
-            ends: SmallVec::new(),
-            cut: SmallVec::new(),
-        }
+        Self { columns, fourth: 0.0, now: SmallVec::new(), found: Minima::new() }
     }
 
     /// Adds a solution of the row under way, of the turn `number`.
@@ -134,64 +114,36 @@ impl Scan {
     /// Ends the row at the value `fourth` of the fourth joint.
     pub fn end_row(&mut self, fourth: f64) {
         self.continue_columns();
-        self.keep_least(self.rows == 1);
-        (self.fourth, self.rows) = (fourth, self.rows + 1);
+        self.keep_least();
+        self.fourth = fourth;
         for column in &mut self.columns {
             column.before = column.here.value;
             column.here = std::mem::replace(&mut column.next, ScanSample::NONE);
         }
     }
 
-    /// Ends the last column.
-    pub fn end(&mut self) {
-        self.keep_least(true);
-    }
-
-    /// Adds the end of a branch that a limit cuts off.
+    /// Adds the end of a branch that a limit cuts off: a branch between two values of the scan has no column.
     pub fn add_end(&mut self, sample: ScanSample) {
-        self.cut.push(sample);
+        let fourth = sample.turns[MOST - 2].angle();
+        insert(&mut self.found, ScanMinimum { sample, fourth, beside: [f64::INFINITY; 2] });
     }
 
-    /// Least values along all columns, the least of all first, and the ends of branches without a column: those that no column goes
-    /// to within `spacing` (rad) of the fourth joint. A column goes to the end that is most like its last sample.
-    pub fn finish(mut self, spacing: f64) -> Minima {
-        let near = spacing.cos() - 1e-9;
-        for end in &self.ends {
-            let mut most = LEAST_ALIKE_NEAR + near;
-            let mut own = None;
-            for (place, cut) in self.cut.iter().enumerate() {
-                let [fourth, other] = [end, cut].map(|sample| sample.turns[MOST - 2]);
-                let apart = fourth.cos * other.cos + fourth.sin * other.sin;
-                let alike = likeness(end, cut) + apart;
-                if apart >= near && alike > most {
-                    (most, own) = (alike, Some(place));
-                }
-            }
-            if let Some(place) = own {
-                self.cut.swap_remove(place);
-            }
-        }
-        for sample in self.cut {
-            let (fourth, beside) = (sample.turns[MOST - 2].angle(), [f64::INFINITY; 2]);
-            insert(&mut self.found, ScanMinimum { sample, fourth, beside, is_at_end: false, is_between: true });
-        }
+    /// Ends the last column. Returns the least values along all columns and the ends of branches, the least of all first.
+    pub fn finish(mut self) -> Minima {
+        self.keep_least();
         self.found
     }
 
     /// Keeps the columns that are least at the row before the one under way.
-    fn keep_least(&mut self, is_at_end: bool) {
+    fn keep_least(&mut self) {
         for Column { before, here, next } in &self.columns {
             let value = here.value;
             if !value.is_finite() {
                 continue;
             }
-            let beside = [*before, next.value];
-            if beside.iter().any(|value| !value.is_finite()) {
-                self.ends.push(*here);
-            }
             if value <= *before && value < next.value {
-                let fourth = self.fourth;
-                insert(&mut self.found, ScanMinimum { sample: *here, fourth, beside, is_at_end, is_between: false });
+                let (fourth, beside) = (self.fourth, [*before, next.value]);
+                insert(&mut self.found, ScanMinimum { sample: *here, fourth, beside });
             }
         }
     }
@@ -208,15 +160,12 @@ fn insert(found: &mut Minima, minimum: ScanMinimum) {
 }
 
 impl ScanMinimum {
-    /// Vertex of the parabola through the three values, which are `spacing` (rad) apart: the value of the fourth joint and the least
-    /// value there; `None` where the column begins or ends.
-    pub fn vertex(&self, spacing: f64) -> Option<[f64; 2]> {
+    /// Value of the fourth joint at the vertex of the parabola through the three values, which are `spacing` (rad) apart; `None` where
+    /// the column begins or ends.
+    pub fn vertex(&self, spacing: f64) -> Option<f64> {
         let [before, after] = self.beside.map(|value| value - self.sample.value);
         let bend = before + after;
-        (bend.is_finite() && bend > 0.0).then(|| {
-            let slope = before - after;
-            [self.fourth + 0.5 * spacing * slope / bend, self.sample.value - 0.125 * slope * slope / bend]
-        })
+        (bend.is_finite() && bend > 0.0).then(|| self.fourth + 0.5 * spacing * (before - after) / bend)
     }
 }
 
@@ -243,8 +192,7 @@ mod tests {
             samples.iter().for_each(|(value, angle)| scan.add(0, sample(*value, *angle)));
             scan.end_row(row as f64);
         }
-        scan.end();
-        scan.finish(1.0)
+        scan.finish()
     }
 
     #[test]
@@ -260,27 +208,25 @@ mod tests {
     }
 
     #[test]
-    fn each_column_goes_to_one_end_and_other_ends_are_kept() {
+    fn ends_of_branches_are_kept_beside_columns() {
         let mut scan = Scan::new(1);
         for (value, angle) in [(0.5, 0.0), (0.4, 0.1)] {
             scan.add(0, sample(value, angle));
             scan.end_row(angle);
         }
-        scan.end();
-        // The column goes to the nearest of these; the other two are the ends of a branch without a column, and of one elsewhere.
-        for (value, angle) in [(0.39, 0.12), (0.2, 0.15), (0.3, 2.0)] {
+        // Both are as near to the end of the column as the end of its own branch would be.
+        for (value, angle) in [(0.39, 0.12), (0.45, 0.15)] {
             scan.add_end(sample(value, angle));
         }
-        scan.add_end(sample(0.52, -0.05));
-        let found: Vec<_> = scan.finish(1.0).iter().map(|least| (least.sample.value, least.is_between)).collect();
-        assert_eq!(found, [(0.2, true), (0.3, true), (0.4, false)]);
+        let found: Vec<_> = scan.finish().iter().map(|least| least.sample.value).collect();
+        assert_eq!(found, [0.39, 0.4, 0.45]);
     }
 
     #[test]
     fn the_vertex_of_a_parabola_is_its_minimum() {
         let parabola = |x: f64| 0.3 + 2.0 * (x - 1.04) * (x - 1.04);
         let found = scanned(&[&[(parabola(0.0), 0.0)], &[(parabola(1.0), 0.0)], &[(parabola(2.0), 0.0)]]);
-        let [place, least] = found[0].vertex(1.0).expect("it has both neighbours");
-        assert!((place - 1.04).abs() < 1e-12 && (least - 0.3).abs() < 1e-12, "{place} {least}");
+        let place = found[0].vertex(1.0).expect("it has both neighbours");
+        assert!((place - 1.04).abs() < 1e-12, "{place}");
     }
 }

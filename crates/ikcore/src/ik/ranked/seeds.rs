@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use crate::closed_form::{SEEDS, Seed};
 use crate::ik::attempt::Attempt;
 use crate::math::Frame;
-use crate::objective::{Differentiable, Point};
+use crate::objective::{Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::solver::{Evaluator, LevenbergMarquardt, Stop, run};
 use crate::task::{Aims, CheckedTask, First, Target, Tolerance};
@@ -35,7 +35,8 @@ impl Attempt<'_, '_> {
         Some(seeds.iter().map(start).collect())
     }
 
-    /// Seeds by descents to the first part alone, from `near` and from scattered starts.
+    /// Seeds by descents to the first part alone, from `near` and from other starts: those of the robot's index that are nearest to that
+    /// part, and scattered ones.
     pub(super) fn searched_seeds(&mut self, pose: &Frame, first: First, near: &[&[f64]]) -> Vec<RankedStart> {
         let target = match first {
             First::Position => Target::Position(pose.origin),
@@ -46,16 +47,16 @@ impl Attempt<'_, '_> {
         let bounds = self.context.bounds();
         let of_point = |q: &[f64]| RankedStart { q: Point::from_slice(q), least: f64::NEG_INFINITY };
         let mut seeds: Vec<RankedStart> = near.iter().map(|q| of_point(q)).collect();
-        let mut start = self.first_start(None);
-        for _ in 0..STARTS {
+        let mut problem = Problem::new(robot, Aims::of_one(&task, &target)).disregarding_turns();
+        let mut start = Point::from_elem(0.0, robot.dof());
+        for number in 0..STARTS {
+            problem.propose_start(number, bounds, self.rng, &mut start);
             seeds.push(of_point(&start));
-            self.next_start(&mut start);
         }
         for RankedStart { q, .. } in &mut seeds {
             if self.budget.left() < TO_FIRST || !self.monitor.keep_going() {
                 break;
             }
-            let mut problem = Problem::new(robot, Aims::of_one(&task, &target)).disregarding_turns();
             let objective: &mut dyn Differentiable = &mut problem;
             let stop = Stop { max_evaluations: TO_FIRST, ..Stop::default() };
             let mut evaluator = Evaluator::new(objective, bounds, stop, self.rng, self.monitor);

@@ -49,6 +49,9 @@ const FAITHFUL: f64 = 2e-3;
 const CHANGE: f64 = 0.3;
 /// Slowdown of a motion along a path with speeds of its own from which on these are asked for again, so that they are reached.
 const SHORT: f64 = 1e-4;
+/// Excess over a position limit (rad, m) that counts as none; and how far inside the limit the path is moved after a larger one, relative to it.
+const TOUCHES: f64 = 1e-10;
+const ROOM: f64 = 2.0;
 /// Number of the shortest intervals that a motion may consist of.
 const SHORTEST: f64 = 5_000.0;
 
@@ -57,7 +60,33 @@ const SHORTEST: f64 = 5_000.0;
 /// # Errors
 /// [`Error::UnsupportedLimit`] if the curvature of the path jumps; [`Error::Interrupted`].
 pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits) -> Result<Trajectory> {
-    timed(path, profile, limits, REFINEMENTS)
+    let motion = timed(path, profile, limits, REFINEMENTS)?;
+    match farther_inside(path, &motion, limits) {
+        Some(path) => timed(&path, profile, limits, REFINEMENTS),
+        None => Ok(motion),
+    }
+}
+
+/// A path like `path`, whose motion swings beyond position limits that the path keeps: between its samples the motion is near the path, not
+/// on it. The path is moved farther inside by twice the swing, but for its ends. `None` where the motion keeps the limits.
+fn farther_inside(path: &JointPath, motion: &Trajectory, limits: &ConstantLimits) -> Option<JointPath> {
+    let [mut lower, mut upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|bound| vec![bound; path.joints().len()]);
+    let mut swings = false;
+    for (joint, (lowest, highest)) in motion.position_range().into_iter().enumerate() {
+        let swing = [limits.lower[joint] - lowest, highest - limits.upper[joint]];
+        if swing.iter().all(|swing| *swing <= TOUCHES) {
+            continue;
+        }
+        let [least, most] = path.range(joint);
+        if swing[0] > TOUCHES && least >= limits.lower[joint] - TOUCHES {
+            (lower[joint], swings) = (limits.lower[joint] + ROOM * swing[0], true);
+        }
+        if swing[1] > TOUCHES && most <= limits.upper[joint] + TOUCHES {
+            (upper[joint], swings) = (limits.upper[joint] - ROOM * swing[1], true);
+        }
+    }
+    let has_room = lower.iter().zip(&upper).all(|(lower, upper)| lower <= upper);
+    (swings && has_room).then(|| path.clone().inside(&lower, &upper))
 }
 
 /// Returns a motion along `path` that is hardly slower.

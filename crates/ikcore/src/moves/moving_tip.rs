@@ -1,0 +1,196 @@
+//! The tips that moves lead: what each must meet, and the joints that move it.
+
+use std::borrow::Cow;
+
+use super::move_task::MoveTask;
+use super::moves_options::MovesOptions;
+use super::program::{JointGoal, Move, MoveKind};
+use crate::error::Result;
+use crate::ik::bring_near;
+use crate::limits::Limits;
+use crate::math::arithmetic::NoFma;
+use crate::math::{Columns, Frame, Pose};
+use crate::objective::{Bounds, Point};
+use crate::robot::Robot;
+use crate::task::{CheckedTask, NamedTask, Subject, Task, Tolerance};
+use crate::timing::ConstantLimits;
+
+/// A tip, and what it must meet of its poses.
+///
+/// The only tip of a robot is moved by all joints. Each of several is moved by the joints that move no other one: the other tips stay where
+/// they are.
+#[derive(Debug, Clone)]
+pub(super) struct MovingTip<'a> {
+    /// The whole robot; with the tool of the task, if it has one tip.
+    robot: Cow<'a, Robot>,
+    pub number: usize,
+    pub task: MoveTask,
+    /// The tip's frame, with the tool of the task if the robot has several tips.
+    frame: CheckedTask,
+    /// What moves one of several tips alone; without joints if nothing does.
+    arm: Option<OwnArm>,
+}
+
+/// The arm that moves one of several tips alone.
+#[derive(Debug, Clone)]
+struct OwnArm {
+    /// From the frame that the arm begins at to the tip, with the tool of the task.
+    robot: Robot,
+    /// Its joints, as entries of q of the whole robot.
+    joints: Vec<usize>,
+}
+
+impl<'a> MovingTip<'a> {
+    /// All tips of a robot, with the tasks of `options`.
+    ///
+    /// # Errors
+    /// Those of [`MoveTask::of`].
+    pub fn all(robot: &'a Robot, options: &MovesOptions) -> Result<Vec<Self>> {
+        (0..robot.tip_count()).map(|number| Self::of(robot, number, options.task_of(number))).collect()
+    }
+
+    fn of(robot: &'a Robot, number: usize, given: Option<&Task>) -> Result<Self> {
+        let task = MoveTask::of(given)?;
+        let with_tool = |robot: &Robot| given.map_or(Ok(None), |given| given.robot(robot));
+        let frame = NamedTask { subject: Subject::Tip(number), task: given.copied(), tolerance: Tolerance::default() };
+        let mut frame = frame.validated()?;
+        if robot.tip_count() == 1 {
+            frame.leave_tool();
+            let robot = with_tool(robot)?.map_or(Cow::Borrowed(robot), Cow::Owned);
+            return Ok(Self { robot, number, task, frame, arm: None });
+        }
+        let arm = match robot.arm(number) {
+            Some(arm) => OwnArm {
+                robot: with_tool(&arm.robot)?.unwrap_or_else(|| arm.robot.clone()),
+                joints: arm.joints.clone(),
+            },
+            None => OwnArm { robot: robot.clone(), joints: vec![] },
+        };
+        Ok(Self { robot: Cow::Borrowed(robot), number, task, frame, arm: Some(arm) })
+    }
+
+    /// The same tip with another task, which has the same tool.
+    pub fn with_task(&self, task: MoveTask) -> Self {
+        Self { task, ..self.clone() }
+    }
+
+    /// Number of the joints of the whole robot.
+    pub fn dof(&self) -> usize {
+        self.robot.dof()
+    }
+
+    /// Names of the joints of the whole robot.
+    pub fn joint_names(&self) -> Vec<String> {
+        self.robot.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    /// Frame of the tip at a configuration.
+    pub fn frame(&self, q: &[f64]) -> Frame {
+        self.frame.frame(&self.robot, q)
+    }
+
+    /// Frame of the tip at a configuration, whose Jacobian is written.
+    pub fn frame_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
+        self.frame.frame_and_jacobian(&self.robot, q, columns)
+    }
+
+    /// Position of the tip at a configuration (m).
+    pub fn position(&self, q: &[f64]) -> [f64; 3] {
+        if self.arm.is_none() { self.robot.tip_position(q) } else { self.frame(q).origin }
+    }
+
+    /// Whether joints move this tip while all other tips stay where they are.
+    pub fn is_movable(&self) -> bool {
+        self.arm.as_ref().is_none_or(|arm| !arm.joints.is_empty())
+    }
+
+    /// Whether what the tip must meet leaves its joints a motion.
+    pub fn is_redundant(&self) -> bool {
+        self.task.leaves_freedom(self.arm.as_ref().map_or(self.robot.dof(), |arm| arm.joints.len()))
+    }
+
+    /// The configuration with this tip's joints at the whole turns nearest to `reference`.
+    pub fn near(&self, q: &[f64], bounds: &Bounds, reference: &[f64]) -> Point {
+        let mut near = Point::from_slice(q);
+        bring_near(&self.robot, bounds, reference, &mut near);
+        self.whole(&self.own(&near), q)
+    }
+
+    /// The period of a joint (rad) that moves this tip alone; `None` for one that stays as it is at whole turns.
+    pub fn turn_period(&self, joint: usize) -> Option<f64> {
+        if self.is_moved_by(joint) { self.robot.turn_period(joint) } else { None }
+    }
+
+    /// Whether a joint moves this tip and no other one.
+    pub fn is_moved_by(&self, joint: usize) -> bool {
+        self.arm.as_ref().is_none_or(|arm| arm.joints.contains(&joint))
+    }
+
+    /// The box in which all joints stay at `q` that do not move this tip, or other ones too.
+    pub fn with_others_at(&self, q: &[f64], mut bounds: Bounds) -> Bounds {
+        if let Some(arm) = &self.arm {
+            for joint in (0..q.len()).filter(|joint| !arm.joints.contains(joint)) {
+                bounds.hold(joint, q[joint]);
+            }
+        }
+        bounds
+    }
+
+    /// The limits `given`, or the robot's, with the positions of `limits` in which all joints stay at `q` that do not move this tip, or other
+    /// ones too.
+    ///
+    /// # Errors
+    /// None in practice.
+    pub fn limits_with_others_at(&self, q: &[f64], given: Option<&Limits>, limits: &ConstantLimits) -> Result<Limits> {
+        let given = given.cloned().unwrap_or_else(|| Limits::of(&self.robot));
+        let ranges = limits.lower.iter().copied().zip(limits.upper.iter().copied());
+        let held = self.with_others_at(q, Bounds::from_ranges(ranges));
+        given.with_positions(held.lower(), held.upper())
+    }
+
+    /// The robot that configurations of this tip are solved with.
+    pub fn solved(&self) -> &Robot {
+        self.arm.as_ref().map_or(&self.robot, |arm| &arm.robot)
+    }
+
+    /// The position limits of that robot.
+    ///
+    /// # Errors
+    /// None in practice.
+    pub fn solved_limits(&self, limits: &ConstantLimits) -> Result<Limits> {
+        Limits::of(self.solved()).with_positions(&self.own(&limits.lower), &self.own(&limits.upper))
+    }
+
+    /// The entries of its joints.
+    pub fn own(&self, q: &[f64]) -> Point {
+        match &self.arm {
+            None => q.into(),
+            Some(arm) => arm.joints.iter().map(|joint| q[*joint]).collect(),
+        }
+    }
+
+    /// The configuration of the whole robot with these entries of its joints, and all others as in `q`.
+    pub fn whole(&self, own: &[f64], q: &[f64]) -> Point {
+        let Some(arm) = &self.arm else { return own.into() };
+        let mut whole = Point::from_slice(q);
+        arm.joints.iter().zip(own).for_each(|(joint, own)| whole[*joint] = *own);
+        whole
+    }
+
+    /// The pose as the robot that is solved with sees it, where the whole robot is at `q`.
+    pub fn seen(&self, pose: &Pose, q: &[f64]) -> Pose {
+        match self.robot.stem_of(self.number, q) {
+            None => *pose,
+            Some(stem) => stem.inverse().then::<NoFma>(&Frame::from(pose)).into(),
+        }
+    }
+}
+
+/// The tips that a move leads: the one that it names, or all of them for a joint move to a configuration.
+pub(super) fn led_by<'t, 'a>(tips: &'t [MovingTip<'a>], each: &Move) -> &'t [MovingTip<'a>] {
+    let named = each.tip.as_deref().and_then(|name| tips.first()?.robot.tip_number(name).ok());
+    match (&each.kind, named) {
+        (MoveKind::Joints(JointGoal::Configuration(_)) | MoveKind::Wait(_), _) | (_, None) => tips,
+        (_, Some(number)) => &tips[number..=number],
+    }
+}
