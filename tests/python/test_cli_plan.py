@@ -121,6 +121,16 @@ def test_the_position_of_an_end_may_come_first() -> None:
     np.testing.assert_allclose(bik.Robot.named("planar5").fk(end)[:3, 3], [1.5, 1.0, 0.0], atol=1e-5)
 
 
+def test_a_position_alone_has_no_part_that_comes_first() -> None:
+    runs = [
+        plan("planar5", "--start-q=0,0.5,0.5,0.5,0.5", "--end", "1.5,1.0,0", "--first", "position"),
+        CliRunner().invoke(app, ["solve", "planar5", "--position", "1.5,1.0,0", "--first", "position"]),
+    ]
+    for refused in runs:
+        assert refused.exit_code != 0
+        assert "--first orders position and orientation" in refused.output.replace("\n", " ")
+
+
 def test_breaks_of_a_path_are_printed(tmp_path: Path) -> None:
     file = tmp_path / "path.csv"
     file.write_text("x,y,z\n0.5,-0.4,0.3\n1.2,0,0.3\n0.5,0.4,0.3\n")

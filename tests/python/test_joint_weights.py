@@ -218,6 +218,25 @@ def test_a_jump_of_two_hands_leaves_the_torso() -> None:
     assert np.abs(tracker.q[:2] - q[:2]).max() < 1e-3
 
 
+@pytest.mark.parametrize("acceleration", [None, 4.0])
+def test_a_tray_in_both_hands_leaves_the_torso(acceleration: float | None) -> None:
+    q = np.clip(np.r_[np.zeros(2), ARM, ARM], PAIR.lower, PAIR.upper)
+    (left, right), (first, second) = PAIR.tips, PAIR.fk(q)
+    tray = np.linalg.inv(first) @ second
+    weights, limits = np.r_[100.0, 100.0, np.ones(14)], bik.Limits(velocity=1.0, acceleration=acceleration)
+    moved = {}
+    for name, joint_weights in {"plain": None, "weighted": weights}.items():
+        tracker = bik.Tracker(PAIR, q, dt=0.01, joint_weights=joint_weights, limits=limits)
+        for k in range(300):
+            target = first.copy()
+            target[[0, 2], 3] += 0.03 * (1 - np.cos(k / 50))
+            step = tracker.step({left: target, (left, right): tray})
+            assert step.errors[left, right][0] < 1e-6
+            moved[name] = max(moved.get(name, 0.0), np.abs(step.q - q)[:2].max())
+        assert step.errors[left][0] < 1e-3
+    assert moved["weighted"] < 2e-3 < 0.02 < moved["plain"]
+
+
 def test_a_heavier_base_never_moves_more() -> None:
     for limits in (None, RATED):
         moved = []

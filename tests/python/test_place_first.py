@@ -374,3 +374,15 @@ def test_most_poses_with_tolerances_are_met_by_a_branch(name: str) -> None:
     found = [bik.solve(robot, robot.fk(q), task=task) for q in robot.random_configurations(50, seed=6)]
     assert all(one.success for one in found)
     assert sum(max(one.position_error, one.rotation_error) < 1e-8 for one in found) >= 40
+
+
+def test_a_place_that_something_blocks_is_in_collision_not_out_of_reach() -> None:
+    robot = HOBBY.with_capsules(radius=0.02)
+    target = turned(robot.fk(np.array([0.3, 0.4, 0.2, 0.3, 0.1])), np.array([0.0, 0.0, 0.3]))
+    free = bik.solve(robot, target, obstacles=[])
+    assert free.status == GIVEN_UP
+    ball = bik.obstacles.Sphere(target[:3, 3], 0.03)
+    blocked = bik.solve(robot, target, obstacles=[ball])
+    assert blocked.status == bik.Status.IN_COLLISION
+    assert "inside obstacle 0 (Sphere) at the best of" in blocked.message
+    assert errors(robot, blocked.q, target)[0] < 1e-6

@@ -10,7 +10,7 @@ import typer
 
 import beetle_ik as bik
 
-from .. import InvalidInputError, Keep, Robot, Sinusoid, upright
+from .. import InvalidInputError, Keep, Robot, Sinusoid, tasks, upright
 from ..robot_files.descriptions import is_description
 
 if TYPE_CHECKING:
@@ -261,6 +261,17 @@ def sinusoid(option: str, text: str) -> Sinusoid:
 
 _NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?:deg)?"
 _NUMBERS = re.compile(rf"([^\s=]+=)?{_NUMBER}(,{_NUMBER})*,?")  # `tip=0.4,` and `--position=0.4` too
+
+
+def pose_first(first: FirstPart | None, *targets: object) -> tasks.Pose | None:
+    """Task of `--first`, which orders the parts of a pose; a position alone, as a list, has none."""
+    if first is None:
+        return None
+    if any(isinstance(target, list) for target in targets):
+        raise InvalidInputError(
+            "--first orders position and orientation, but this target is a position alone: give roll, pitch and yaw too"
+        )
+    return tasks.Pose(first=first.value)
 
 
 def numbers_joined(arguments: list[str]) -> list[str]:

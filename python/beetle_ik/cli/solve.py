@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import InvalidInputError, Robot, Scene, Solution, SolutionSet, Status, Stop, pose, solve_all, tasks
+from .. import InvalidInputError, Robot, Scene, Solution, SolutionSet, Status, Stop, pose, solve_all
 from .. import solve as solve_target
 from .options import (
     AsJson,
@@ -25,6 +25,7 @@ from .options import (
     load_robot,
     make_solver,
     numbers,
+    pose_first,
 )
 from .show import as_argument, print_json, print_pairs
 from .wording import in_options
@@ -77,7 +78,7 @@ def solve(
         "seed": seed,
     }
     if first is not None:
-        options["task"] = tasks.Pose(first=first.value)
+        options["task"] = pose_first(first, *(wanted.values() if isinstance(wanted, dict) else [wanted]))
     if every:
         if joint_weights is not None:
             raise InvalidInputError("--joint-weights choose one solution: leave out --all")

@@ -16,6 +16,8 @@ pub struct TaskRows<'a> {
     pub columns: &'a [[f64; ROWS]],
     /// Residual to be removed by the step.
     pub residual: &'a [f64; ROWS],
+    /// Factor that both contain.
+    pub scale: f64,
 }
 
 /// Damped least-squares step in a box for several tasks; [`BoxStep`] is the case of one.
@@ -42,7 +44,7 @@ impl BlockStep<'_> {
         let Self { tasks, lambda, x, lower, upper } = *self;
         match tasks {
             [] => out.copy_from_slice(x),
-            [TaskRows { columns, residual }] => BoxStep { columns, residual, lambda, x, lower, upper }.write(out),
+            [TaskRows { columns, residual, .. }] => BoxStep { columns, residual, lambda, x, lower, upper }.write(out),
             _ => write_step(self, out),
         }
     }
@@ -214,7 +216,7 @@ mod tests {
     type Columns = Vec<[f64; ROWS]>;
 
     fn tasks<'a>(columns: &'a [Columns], residuals: &'a [[f64; ROWS]]) -> Vec<TaskRows<'a>> {
-        columns.iter().zip(residuals).map(|(columns, residual)| TaskRows { columns, residual }).collect()
+        columns.iter().zip(residuals).map(|(columns, residual)| TaskRows { columns, residual, scale: 1.0 }).collect()
     }
 
     /// Generates `count` tasks with `n` entries of x, the first of which moves only the first task.

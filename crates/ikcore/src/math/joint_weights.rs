@@ -127,7 +127,8 @@ impl JointWeights {
                 task.columns.iter().zip(&self.relative).map(|(column, weight)| column.map(|entry| entry / weight));
             columns.extend(scaled);
         }
-        let rows = columns.chunks_exact(n).zip(wanted).map(|(columns, residual)| TaskRows { columns, residual });
+        let rows = columns.chunks_exact(n).zip(wanted);
+        let rows = rows.map(|(columns, residual)| TaskRows { columns, residual, scale: 1.0 });
         let tasks: SmallVec<[TaskRows<'_>; 4]> = rows.collect();
         let (mut lower, mut upper) = (Joints::new(), Joints::new());
         for (j, weight) in self.relative.iter().enumerate() {
@@ -151,7 +152,8 @@ impl JointWeights {
         if self.largest_effect == f64::INFINITY {
             return 1.0;
         }
-        let wanted = sizes(wanted.iter());
+        let each = step.tasks.iter().zip(wanted).map(|(task, rows)| squared_sizes(rows, task.scale));
+        let wanted = each.fold([0.0; 2], |sums, sizes| [sums[0] + sizes[0], sums[1] + sizes[1]]).map(f64::sqrt);
         let beyond = |j: usize| {
             let valid = self.valid_step(wanted, step.tasks, j).max((plain[j] - step.x[j]).abs());
             if cheapest[j] == 0.0 { 0.0 } else { cheapest[j].abs() / valid }
@@ -161,7 +163,11 @@ impl JointWeights {
 
     /// Longest step of joint `j` for which the tasks are linear, against the wanted effect of these sizes in position or in rotation.
     fn valid_step(&self, wanted: [f64; 2], tasks: &[TaskRows<'_>], j: usize) -> f64 {
-        let own = sizes(tasks.iter().map(|task| &task.columns[j]));
+        // Two arms that hold a pair both move it as far as the tip: the task that the joint moves most counts.
+        let each = tasks.iter().map(|task| squared_sizes(&task.columns[j], task.scale));
+        let own = each
+            .fold([0.0_f64; 2], |most: [f64; 2], sizes: [f64; 2]| [most[0].max(sizes[0]), most[1].max(sizes[1])])
+            .map(f64::sqrt);
         let part = |k: usize| {
             let ratio = wanted[k] / own[k];
             if wanted[k] > 0.0 { (self.largest_effect * ratio).min((2.0 * BENT * ratio).sqrt()) } else { 0.0 }
@@ -181,15 +187,10 @@ fn after(step: &BlockStep<'_>, mut residuals: TaskVector, out: &[f64], sign: f64
     residuals
 }
 
-/// Norms of the position rows and of the rotation rows.
-fn sizes<'a>(rows: impl Iterator<Item = &'a [f64; ROWS]>) -> [f64; 2] {
-    let mut sums = [0.0; 2];
-    for row in rows {
-        let (position, rotation) = row.split_at(POSITION_ROWS);
-        sums[0] += dot(position, position);
-        sums[1] += dot(rotation, rotation);
-    }
-    sums.map(f64::sqrt)
+/// Squared norms of the position row and of the rotation row of a task, without the `scale` that they contain.
+fn squared_sizes(row: &[f64; ROWS], scale: f64) -> [f64; 2] {
+    let (position, rotation) = row.split_at(POSITION_ROWS);
+    [position, rotation].map(|part| dot(part, part) / (scale * scale))
 }
 
 /// The tasks with these residuals in place of their own.
@@ -220,7 +221,7 @@ mod tests {
     ) -> (Vec<f64>, Vec<f64>) {
         let n = columns.len();
         let (x, mut plain, mut out) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        let tasks = [TaskRows { columns, residual }];
+        let tasks = [TaskRows { columns, residual, scale: 1.0 }];
         let step = BlockStep { tasks: &tasks, lambda, x: &x, lower, upper };
         step.write(&mut plain);
         match JointWeights::new(weights).unwrap() {
@@ -316,7 +317,7 @@ mod tests {
         let mut last = 0.0;
         for sine in [0.5, 0.1, 0.03, 0.01, 1e-3, 0.0] {
             let (columns, x, mut out) = (columns(sine), [0.0; 3], [0.0; 3]);
-            let tasks = [TaskRows { columns: &columns, residual: &residual }];
+            let tasks = [TaskRows { columns: &columns, residual: &residual, scale: 1.0 }];
             let step = BlockStep { tasks: &tasks, lambda: 1e-12, x: &x, lower: &[-FREE; 3], upper: &[FREE; 3] };
             JointWeights::new(&[1.0, 1.0, 1e3]).unwrap().unwrap().fading_at(10.0).write(&step, &mut out);
             assert!(differs(&effect(&columns, &out), &residual.map(|r| -r)) < 1e-9, "{out:?}");

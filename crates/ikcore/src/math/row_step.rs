@@ -303,7 +303,7 @@ mod tests {
 
     impl Case {
         fn tasks(&self) -> [TaskRows<'_>; 1] {
-            [TaskRows { columns: &self.columns, residual: &self.residual }]
+            [TaskRows { columns: &self.columns, residual: &self.residual, scale: 1.0 }]
         }
 
         fn solve(&self, start: &[f64], x: &mut [f64]) -> bool {

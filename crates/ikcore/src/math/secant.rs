@@ -97,7 +97,8 @@ impl SecantBlocks {
             return secant.step(residual, damping, x, [lower, upper], out);
         }
         let lambda = damping * self.0.iter().map(|secant| secant.size(x.len())).sum::<f64>();
-        let rows = self.0.iter().zip(residuals).map(|(Secant { columns }, residual)| TaskRows { columns, residual });
+        let rows = self.0.iter().zip(residuals);
+        let rows = rows.map(|(Secant { columns }, residual)| TaskRows { columns, residual, scale: 1.0 });
         let tasks: SmallVec<[TaskRows<'_>; 4]> = rows.collect();
         BlockStep { tasks: &tasks, lambda, x, lower, upper }.write(out);
     }

@@ -10,12 +10,14 @@ use crate::math::vector::squared_size;
 use crate::math::{Columns, MAX_DOF, StepBox};
 
 /// Residual r and Jacobian dr/dx of one task at a point.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct TaskBlock {
     /// Weighted residual, actual minus target; rows that a task does not use are zero.
     pub residual: [f64; ROWS],
     /// Columns of the weighted Jacobian, one per entry of x; the first `dimension` are in use.
     pub columns: Columns,
+    /// Factor that both contain, by which the task counts against others.
+    pub scale: f64,
 }
 
 /// Residuals and Jacobians of all tasks at a point; most objectives have one task.
@@ -118,7 +120,13 @@ impl Linearization {
 
     #[cold]
     fn rows(&self) -> SmallVec<[TaskRows<'_>; 4]> {
-        self.blocks().map(|TaskBlock { columns, residual }| TaskRows { columns, residual }).collect()
+        self.blocks().map(TaskBlock::rows).collect()
+    }
+}
+
+impl Default for TaskBlock {
+    fn default() -> Self {
+        Self { residual: [0.0; ROWS], columns: Columns::default(), scale: 1.0 }
     }
 }
 
@@ -126,12 +134,12 @@ impl TaskBlock {
     /// Writes the step for this task alone, as [`Linearization::write_step`].
     #[inline]
     pub fn write_step<'b>(&self, lambda: f64, x: &[f64], within: impl Into<StepBox<'b>>, out: &mut [f64]) {
-        let Self { columns, residual } = self;
+        let Self { columns, residual, .. } = self;
         match within.into() {
             StepBox { lower, upper, weights: None } => {
                 BoxStep { columns, residual, lambda, x, lower, upper }.write(out)
             }
-            within => write_by_weights(&[TaskRows { columns, residual }], lambda, x, within, out),
+            within => write_by_weights(&[self.rows()], lambda, x, within, out),
         }
     }
 
@@ -145,13 +153,17 @@ impl TaskBlock {
         within: impl Into<StepBox<'b>>,
         out: &mut [f64],
     ) {
-        let Self { columns, residual } = self;
+        let Self { columns, residual, .. } = self;
         match within.into() {
             StepBox { lower, upper, weights: None } => {
                 BoxStep { columns, residual, lambda, x, lower, upper }.write_near(preferred, out);
             }
-            within => write_near_by_weights(&[TaskRows { columns, residual }], preferred, lambda, x, within, out),
+            within => write_near_by_weights(&[self.rows()], preferred, lambda, x, within, out),
         }
+    }
+
+    fn rows(&self) -> TaskRows<'_> {
+        TaskRows { columns: &self.columns, residual: &self.residual, scale: self.scale }
     }
 
     /// Adds J'r to `gradient`.

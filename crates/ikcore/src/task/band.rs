@@ -72,7 +72,7 @@ fn reduce_row(k: usize, band: f64, dof: usize, out: &mut TaskBlock) {
 
 /// Shortens the vector of the three rows from `first` on by `band`.
 fn reduce_rows(first: usize, band: f64, dof: usize, out: &mut TaskBlock) {
-    let TaskBlock { residual, columns } = out;
+    let TaskBlock { residual, columns, .. } = out;
     let vector: [f64; 3] = std::array::from_fn(|k| residual[first + k]);
     let length = vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     if !(length > band) {

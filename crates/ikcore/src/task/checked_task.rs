@@ -85,6 +85,7 @@ impl CheckedTask {
     /// `block`.
     pub(super) fn linearize(&self, target: &Target, frame: &Frame, dof: usize, block: &mut TaskBlock) -> Assessment {
         let assessment = target.linearize_tip(frame, dof, &self.criterion, block);
+        block.scale = self.weight;
         if self.weight != 1.0 {
             let entries = block.columns[..dof].iter_mut().chain(std::iter::once(&mut block.residual)).flatten();
             entries.for_each(|entry| *entry *= self.weight);

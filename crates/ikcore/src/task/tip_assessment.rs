@@ -74,7 +74,7 @@ impl Target {
             Self::Orientation(target) => {
                 out.residual[..3].fill(0.0);
                 out.columns[..dof].iter_mut().for_each(|column| column[..3].fill(0.0));
-                let TaskBlock { residual, columns } = out;
+                let TaskBlock { residual, columns, .. } = out;
                 let (target, tip) = (axes_of(target), axes_of(tip));
                 let rotation = orientation::linearize(&target, &tip, residual, &mut columns[..dof]);
                 summed(SquaredError { position: None, rotation: Some(rotation.stored()) })

@@ -121,13 +121,13 @@ impl ConstrainedStep {
         let is_pair = |i: usize| aims.tasks.get(i).is_some_and(|task| task.is_held);
         let counts = |i: usize| towards != Towards::Joints && !is_pair(i);
         let blocks = self.linearization.blocks().enumerate().filter(|(i, _)| counts(*i));
-        let tasks = blocks.map(|(_, TaskBlock { columns, residual })| match towards {
-            Towards::Target => TaskRows { columns, residual },
-            Towards::Start | Towards::Joints => TaskRows { columns, residual: &[0.0; ROWS] },
+        let tasks = blocks.map(|(_, TaskBlock { columns, residual, scale })| match towards {
+            Towards::Target => TaskRows { columns, residual, scale: *scale },
+            Towards::Start | Towards::Joints => TaskRows { columns, residual: &[0.0; ROWS], scale: *scale },
         });
         let mut tasks: SmallVec<[TaskRows<'_>; 5]> = tasks.collect();
         if !self.wanted.is_empty() {
-            tasks.push(TaskRows { columns: &self.wanted_columns, residual: &short });
+            tasks.push(TaskRows { columns: &self.wanted_columns, residual: &short, scale: URGENT });
         }
         let size: f64 = tasks.iter().map(|task| squared_size(&task.columns[..n])).sum();
         let lambda = if tasks.is_empty() { 1.0 } else { (DAMPING * size).max(f64::MIN_POSITIVE.sqrt()) };

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ... import InvalidInputError, Scene, plan_point_to_point, pose, tasks
+from ... import InvalidInputError, Scene, plan_point_to_point, pose
 from ...papers import TPBSO
 from ..options import (
     Acceleration,
@@ -31,6 +31,7 @@ from ..options import (
     load_robot,
     loaded,
     numbers,
+    pose_first,
 )
 from .planned import Animated, Budget, Out, SearchName, Solver, options, report, search
 
@@ -121,7 +122,7 @@ def point_to_point(
             approach=approach,
             retreat=retreat,
             free_start=free_start,
-            task=None if first is None else tasks.Pose(first=first.value),
+            task=pose_first(first, *(ends[name] for name in ("start", "end") if name in ends)),
             keep=keep,
             obstacles=obstacles,
             margin=margin,

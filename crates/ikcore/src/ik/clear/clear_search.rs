@@ -54,6 +54,12 @@ impl<'s, 'm, 'p> ClearSearch<'s, 'm, 'p> {
         Self { attempt, space, blocked: BlockedSolutions::new(), hopeless: OnceCell::new(), push }
     }
 
+    /// Remembers solutions of a part of the target, which are not clear. What the whole target fixes does not block all of them.
+    pub fn note_partial(&mut self, configurations: &[Point]) {
+        configurations.iter().for_each(|q| self.blocked.push(q));
+        self.hopeless = OnceCell::from(None);
+    }
+
     /// Whether the solution `q` is clear. A blocked one is remembered.
     pub fn is_clear(&mut self, q: &[f64]) -> bool {
         self.attempt.budget.evaluations += 1;

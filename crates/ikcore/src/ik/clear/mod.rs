@@ -5,6 +5,7 @@
 //! `least_cost` compares several. Every solution returned as solved was certified by
 //! [`ClearSpace::holds`](crate::obstacle::ClearSpace::holds).
 
+mod blocked_part;
 mod blocked_solutions;
 mod branches;
 mod clear_search;
@@ -12,4 +13,5 @@ mod clear_solution;
 mod least_cost;
 mod restarts;
 
+pub(super) use blocked_part::in_collision_at;
 pub(super) use clear_solution::{clear_solution, made_clear};

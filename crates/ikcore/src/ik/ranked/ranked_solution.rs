@@ -3,6 +3,7 @@
 use super::ranked_descent::{MOST_EVALUATIONS, RankedDescent, RankedPoint};
 use super::seeds::RankedStart;
 use crate::ik::attempt::Attempt;
+use crate::ik::clear::in_collision_at;
 use crate::ik::solution::{Nearest, Solution};
 use crate::ik::whole_turns::bring_near;
 use crate::math::Frame;
@@ -21,7 +22,7 @@ const SAME_SECOND: f64 = 1e-10;
 pub(in crate::ik) fn ranked_at_once(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let (pose, first) = ranked_pose(attempt)?;
     let seeds = attempt.closed_form_seeds(&pose, first)?;
-    let best = best_of(attempt, &pose, first, seeds.iter());
+    let best = best_of(attempt, &pose, first, seeds.iter(), &mut vec![]);
     let found = chosen(attempt, best, start)?;
     let (_, criterion) = attempt.problem.only_target()?;
     // Within tolerances that are wide, another configuration may meet both parts.
@@ -47,8 +48,10 @@ pub(in crate::ik) fn ranked_solution(
     let near: Vec<&[f64]> = std::iter::once(&missed.q[..]).chain(start).collect();
     let mut seeds = attempt.searched_seeds(&pose, first, &near);
     seeds.extend(attempt.closed_form_seeds(&pose, first).into_iter().flatten());
-    let best = best_of(attempt, &pose, first, seeds.iter());
-    let Some(found) = chosen(attempt, best, start) else { return missed };
+    let mut blocked = vec![];
+    let best = best_of(attempt, &pose, first, seeds.iter(), &mut blocked);
+    let found = chosen(attempt, best, start).filter(|found| blocked.is_empty() || found.status != Status::Stalled);
+    let Some(found) = found else { return in_collision_at(attempt, &blocked).unwrap_or(missed) };
     match found.status {
         Status::Stalled => {
             let mut found = attempt.explained(missed.status, found.q);
@@ -70,12 +73,13 @@ fn ranked_pose(attempt: &Attempt<'_, '_>) -> Option<(Frame, First)> {
 }
 
 /// Descends from the seeds, and returns the points with the least error of the first part, of these those with the least of the
-/// second.
+/// second. Points that meet the first part but are not clear are added to `blocked`.
 fn best_of<'s>(
     attempt: &mut Attempt<'_, '_>,
     pose: &Frame,
     first: First,
     seeds: impl Iterator<Item = &'s RankedStart>,
+    blocked: &mut Vec<Point>,
 ) -> Vec<RankedPoint> {
     let (robot, bounds) = (attempt.context.robot(), attempt.context.bounds());
     let mut descent = RankedDescent::new(robot, pose, first, bounds);
@@ -96,7 +100,13 @@ fn best_of<'s>(
     }
     attempt.budget.evaluations += descent.evaluations;
     if let Some(space) = attempt.context.space() {
-        points.retain(|point| space.holds(&point.q));
+        points.retain(|point| {
+            let is_clear = space.holds(&point.q);
+            if point.is_met() && !is_clear {
+                blocked.push(point.q.clone());
+            }
+            is_clear
+        });
     }
     let least = points.iter().map(|point| point.first).fold(f64::INFINITY, f64::min);
     points.retain(|point| point.first <= least + SAME_FIRST);

@@ -178,7 +178,7 @@ fn back_to_task(at: &Linearization, from: &[f64], q: &mut [f64]) {
 
 /// Gauss-Newton step from `x` without limits.
 fn unbounded<'a>(at: &'a Linearization, x: &'a [f64]) -> BoxStep<'a> {
-    let (n, TaskBlock { columns, residual }) = (x.len(), &at.first);
+    let (n, TaskBlock { columns, residual, .. }) = (x.len(), &at.first);
     let lambda = least_damping(&columns[..n]);
     BoxStep { columns, residual, lambda, x, lower: &NOWHERE[..n], upper: &ANYWHERE[..n] }
 }

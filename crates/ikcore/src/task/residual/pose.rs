@@ -20,7 +20,7 @@ pub(crate) fn error(target: &Frame, tip: &Frame) -> SquaredError {
 #[inline]
 pub(crate) fn linearize(target: &Frame, tip: &Frame, dof: usize, out: &mut TaskBlock) -> SquaredError {
     out.residual[..3].copy_from_slice(&position::residual(&target.origin, &tip.origin));
-    let TaskBlock { residual, columns } = out;
+    let TaskBlock { residual, columns, .. } = out;
     let rotation = orientation::linearize(&axes_of(target), &axes_of(tip), residual, &mut columns[..dof]).stored();
     SquaredError { position: Some(position::error(&target.origin, &tip.origin)), rotation: Some(rotation) }
 }

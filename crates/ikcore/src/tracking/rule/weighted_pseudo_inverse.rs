@@ -158,7 +158,7 @@ fn displacement(
     let gain = rule.gain.unwrap_or(FRACTION_PER_TICK / dt);
     let drift = linearize(scratch, from, fraction, tick);
     let null_space_step = null_space_step(rule, from, fraction, tick);
-    let TaskBlock { columns, residual } = &mut *scratch.linearization;
+    let TaskBlock { columns, residual, .. } = &mut *scratch.linearization;
     let columns = &mut columns[..q.len()];
     // Scaling by y = W^(1/2) q turns the norm of W into the Euclidean norm.
     let units = units(rule, &tick_box.velocity);
