@@ -72,6 +72,7 @@ class Equalities(Attack):
                 random = np.random.default_rng(0)
                 starts = [
                     oracle.linear_start(known, others),
+                    oracle.followed_start(known, others),
                     *random.uniform(-1, 1, (6, len(others))),
                     *random.uniform(-9, 9, (40, len(others))),  # a power of four goes far
                 ]
@@ -113,9 +114,7 @@ class Oracle:
         mujoco.mj_kinematics(self.model, self.reference)
         # Equalities among fingers alone bind no joint of the chain: what they say is about held joints.
         beside = {4, 5}
-        self.couplings = [
-            entry for entry in case["couplings"] if entry[-1] and not {entry[0], max(entry[1], entry[0])} <= beside
-        ]
+        self.couplings = [entry for entry in case["couplings"] if entry[-1] and not {*entry[:2]} - {-1} <= beside]
         self.loops = [loop for loop in case["loops"] if not {loop[1], loop[2]} <= {"body_f", "body_g"}]
         self.on_chain = bool(self.couplings or self.loops)
 
@@ -148,6 +147,17 @@ class Oracle:
             totals -= rows[:, JOINTS.index(name)] * (value - rest[name])
         found = np.linalg.lstsq(rows[:, [JOINTS.index(name) for name in others]], totals, rcond=None)[0]
         return found + np.array([rest[name] for name in others])
+
+    def followed_start(self, known: dict[str, float], others: list[str]) -> Any:
+        """Positions of the other joints where each follows its master, from those where all couplings are linear."""
+        rest = {name: float(self.model.joint(name).qpos0[0]) for name in JOINTS}
+        positions = known | dict(zip(others, self.linear_start(known, others), strict=True))
+        for follower, master, *factors, _ in len(JOINTS) * self.couplings:
+            name, driver = JOINTS[follower], JOINTS[max(master, 0)]
+            if name in others:
+                at = positions[driver] - rest[driver] if master >= 0 else 0.0
+                positions[name] = rest[name] + float(np.polyval(factors[::-1], at))
+        return np.array([positions[name] for name in others])
 
     def _relative(self, data: Any, one: str, other: str) -> tuple[Any, Any]:
         """The origin of the first body, where `connect` has its anchor, and its rotation, as the second sees it."""

@@ -63,7 +63,7 @@ impl Climber<'_> {
 
     /// The error for a block without a configuration; with several tips it says which joints stay.
     pub fn no_way(&self, block: usize, dead: Dead, monitor: &mut dyn Monitor) -> Result<Error> {
-        let is_shared = |joint: usize| self.tips.iter().all(|tip| !tip.is_moved_by(joint));
+        let is_shared = |joint: usize| self.tips.iter().all(|tip| !tip.owns(joint));
         let note = (0..self.limits.dof()).any(is_shared).then_some(SHARED);
         let noted = |problem: Message| match note {
             Some(note) => message![problem, note],

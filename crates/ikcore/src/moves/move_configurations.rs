@@ -30,8 +30,8 @@ pub(super) struct MoveConfigurations<'s, 'a> {
 }
 
 impl MoveConfigurations<'_, '_> {
-    /// Configurations of the whole robot that meet the task at a pose, those nearest to `reference` first, whose other joints they have; why
-    /// there are none.
+    /// Configurations of the whole robot that meet the task at a pose, with all joints but the tip's own at `reference`; those nearest to it
+    /// first. Otherwise why there are none.
     ///
     /// # Errors
     /// Those of `solve_all`.
@@ -60,7 +60,7 @@ impl MoveConfigurations<'_, '_> {
         Ok(if found.is_empty() { Err(none.into()) } else { Ok(found) })
     }
 
-    /// The configurations of the whole robot, whose other joints are at `reference`.
+    /// Configurations of the whole robot, with all joints but the tip's own at `reference`.
     fn wholes(&self, found: &[Point], reference: &[f64]) -> Vec<Point> {
         found.iter().map(|own| self.tip.whole(own, reference)).collect()
     }

@@ -17,8 +17,8 @@ use crate::timing::ConstantLimits;
 
 /// A tip, and what it must meet of its poses.
 ///
-/// The only tip of a robot is moved by all joints. Each of several is moved by the joints that move no other one: the other tips stay where
-/// they are.
+/// Its own joints are those that move it and no other tip: all joints for the only tip of a robot. Moves that it leads leave all others where
+/// they are, and with them the other tips.
 #[derive(Debug, Clone)]
 pub(super) struct MovingTip<'a> {
     /// The whole robot; with the tool of the task, if it has one tip.
@@ -27,16 +27,16 @@ pub(super) struct MovingTip<'a> {
     pub task: MoveTask,
     /// The tip's frame, with the tool of the task if the robot has several tips.
     frame: CheckedTask,
-    /// What moves one of several tips alone; without joints if nothing does.
+    /// The own joints of one of several tips; `None` for the only tip.
     arm: Option<OwnArm>,
 }
 
-/// The arm that moves one of several tips alone.
+/// The arm of one of several tips.
 #[derive(Debug, Clone)]
 struct OwnArm {
-    /// From the frame that the arm begins at to the tip, with the tool of the task.
+    /// From the frame at which the own joints begin to the tip, with the tool of the task.
     robot: Robot,
-    /// Its joints, as entries of q of the whole robot.
+    /// The own joints, as entries of q of the whole robot; empty where no joint moves the tip alone.
     joints: Vec<usize>,
 }
 
@@ -99,34 +99,34 @@ impl<'a> MovingTip<'a> {
         if self.arm.is_none() { self.robot.tip_position(q) } else { self.frame(q).origin }
     }
 
-    /// Whether joints move this tip while all other tips stay where they are.
+    /// Whether it has joints of its own.
     pub fn is_movable(&self) -> bool {
         self.arm.as_ref().is_none_or(|arm| !arm.joints.is_empty())
     }
 
-    /// Whether what the tip must meet leaves its joints a motion.
+    /// Whether its joints can move while it meets a pose.
     pub fn is_redundant(&self) -> bool {
         self.task.leaves_freedom(self.arm.as_ref().map_or(self.robot.dof(), |arm| arm.joints.len()))
     }
 
-    /// The configuration with this tip's joints at the whole turns nearest to `reference`.
+    /// The configuration `q` with its own joints at the whole turns nearest to `reference`.
     pub fn near(&self, q: &[f64], bounds: &Bounds, reference: &[f64]) -> Point {
         let mut near = Point::from_slice(q);
         bring_near(&self.robot, bounds, reference, &mut near);
         self.whole(&self.own(&near), q)
     }
 
-    /// The period of a joint (rad) that moves this tip alone; `None` for one that stays as it is at whole turns.
+    /// The period (rad) of a joint of its own that may be turned by whole turns; `None` for all other joints.
     pub fn turn_period(&self, joint: usize) -> Option<f64> {
-        if self.is_moved_by(joint) { self.robot.turn_period(joint) } else { None }
+        if self.owns(joint) { self.robot.turn_period(joint) } else { None }
     }
 
-    /// Whether a joint moves this tip and no other one.
-    pub fn is_moved_by(&self, joint: usize) -> bool {
+    /// Whether a joint is its own.
+    pub fn owns(&self, joint: usize) -> bool {
         self.arm.as_ref().is_none_or(|arm| arm.joints.contains(&joint))
     }
 
-    /// The box in which all joints stay at `q` that do not move this tip, or other ones too.
+    /// The box with all joints but its own held at `q`.
     pub fn with_others_at(&self, q: &[f64], mut bounds: Bounds) -> Bounds {
         if let Some(arm) = &self.arm {
             for joint in (0..q.len()).filter(|joint| !arm.joints.contains(joint)) {
@@ -136,8 +136,7 @@ impl<'a> MovingTip<'a> {
         bounds
     }
 
-    /// The limits `given`, or the robot's, with the positions of `limits` in which all joints stay at `q` that do not move this tip, or other
-    /// ones too.
+    /// The limits `given`, or the robot's, with the positions of `limits`, and all joints but its own held at `q`.
     ///
     /// # Errors
     /// None in practice.
@@ -161,7 +160,7 @@ impl<'a> MovingTip<'a> {
         Limits::of(self.solved()).with_positions(&self.own(&limits.lower), &self.own(&limits.upper))
     }
 
-    /// The entries of its joints.
+    /// The entries of its own joints.
     pub fn own(&self, q: &[f64]) -> Point {
         match &self.arm {
             None => q.into(),
@@ -169,7 +168,7 @@ impl<'a> MovingTip<'a> {
         }
     }
 
-    /// The configuration of the whole robot with these entries of its joints, and all others as in `q`.
+    /// The configuration of the whole robot with these entries of its own joints, and all others as in `q`.
     pub fn whole(&self, own: &[f64], q: &[f64]) -> Point {
         let Some(arm) = &self.arm else { return own.into() };
         let mut whole = Point::from_slice(q);
@@ -177,7 +176,7 @@ impl<'a> MovingTip<'a> {
         whole
     }
 
-    /// The pose as the robot that is solved with sees it, where the whole robot is at `q`.
+    /// The pose in the base of the robot that configurations are solved with, where the whole robot is at `q`.
     pub fn seen(&self, pose: &Pose, q: &[f64]) -> Pose {
         match self.robot.stem_of(self.number, q) {
             None => *pose,

@@ -16,7 +16,7 @@ pub struct Move {
     /// Radius (m) about the end of the move inside which the motion may round the corner to the next move. With zero, or less than the
     /// 1e-5 m that a path is kept to, it stops there.
     pub blend: f64,
-    /// The tip that a line, an arc or a joint move to a pose leads, of a robot with several: joints that move another tip too stay where they
+    /// The tip that a line, an arc or a joint move to a pose leads, of a robot with several; joints that move other tips too stay where they
     /// are. `None`: the only tip.
     pub tip: Option<String>,
     /// Name in messages and reports.

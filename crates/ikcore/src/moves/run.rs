@@ -70,7 +70,7 @@ impl<'a> Run<'a> {
         Self { parts: vec![part], windows: vec![Window { begin: from, from, to }], path }
     }
 
-    /// The run of several parts of a robot with `all` these tips, whose corners are rounded within `radii` (m); `None` where that is not found.
+    /// The run of several parts, whose corners are rounded within `radii` (m); `None` where that is not found. `all` are the tips of the robot.
     ///
     /// # Errors
     /// None in practice: the parts differ.

@@ -54,7 +54,7 @@ pub(super) fn groups<'r>(tip: &MovingTip<'_>, before: &'r [Rung]) -> Vec<Vec<Bef
     for rung in before.iter().enumerate() {
         let is_like = |group: &&mut Vec<Before<'_>>| {
             let pairs = group[0].1.end().iter().zip(rung.1.end());
-            pairs.enumerate().all(|(joint, (one, other))| tip.is_moved_by(joint) || (one - other).abs() < SAME)
+            pairs.enumerate().all(|(joint, (one, other))| tip.owns(joint) || (one - other).abs() < SAME)
         };
         match groups.iter_mut().find(is_like) {
             Some(group) => group.push(rung),
