@@ -260,7 +260,7 @@ def test_a_speed_under_jerk_limits_is_kept_for_an_instant_too() -> None:
     q, qd, _ = plan.trajectory.at(np.linspace(first.start, first.end, 4001))
     speeds = np.linalg.norm((UR5.jacobian(q)[:, :3] @ qd[:, :, None])[:, :, 0], axis=1)
     way = UR5.fk(q)[:, 2, 3] - shifted()[2, 3]
-    assert speeds[way < 0.0079].max() == pytest.approx(0.1, rel=1.1e-3)
+    assert speeds[way < 0.0079].max() == pytest.approx(0.1, rel=1.3e-3)
 
 
 def test_a_speed_that_joints_cannot_reach_is_no_error() -> None:
