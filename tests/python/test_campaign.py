@@ -37,6 +37,8 @@ CASES = {
     "complete_sets": 6,
     "arguments": 12,
 }
+FOUND = [("programs", 44, 243), ("programs", 46, 794), ("programs", 47, 1115)]
+"""Motions 1e-8 beyond a limit that they begin at, under jerk limits, and a tip that was too fast between samples."""
 
 
 @pytest.fixture(autouse=True)
@@ -53,6 +55,14 @@ def test_promises_hold_in_a_few_cases(name: str) -> None:
     for index in (i for i in range(1, 200, 2) if i // 2 < CASES.get(name, 16)):
         verdict = attack.tried(one, attack.drawn(one, 1, index))
         assert verdict.failure is None, f"python -m campaign repeat {name} --seed 1 --index {index}: {verdict}"
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(("name", "seed", "index"), FOUND)
+def test_cases_that_failed_once_pass(name: str, seed: int, index: int) -> None:
+    one = ATTACKS[name]
+    verdict = attack.tried(one, attack.drawn(one, seed, index))
+    assert verdict.failure is None, verdict
 
 
 def test_a_case_is_the_same_whenever_it_is_drawn() -> None:

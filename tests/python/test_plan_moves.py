@@ -252,6 +252,17 @@ def test_a_speed_is_kept_but_for_starting_and_stopping() -> None:
     assert plan.trajectory.duration == pytest.approx(4.0, abs=0.1)
 
 
+def test_a_speed_under_jerk_limits_is_kept_for_an_instant_too() -> None:
+    """The fastest instant is beside the middle of a segment of the trajectory; between segments the speed was right."""
+    program = [Line(shifted(z=0.01), speed=0.1, blend=0.002), Line(shifted(z=0.06), speed=0.01)]
+    plan = bik.plan_moves(UR5, program, start_q=HOME, limits=bik.Limits(acceleration=4.0, jerk=80.0))
+    first = plan.moves[0]
+    q, qd, _ = plan.trajectory.at(np.linspace(first.start, first.end, 4001))
+    speeds = np.linalg.norm((UR5.jacobian(q)[:, :3] @ qd[:, :, None])[:, :, 0], axis=1)
+    way = UR5.fk(q)[:, 2, 3] - shifted()[2, 3]
+    assert speeds[way < 0.0079].max() == pytest.approx(0.1, rel=1.3e-3)
+
+
 def test_a_speed_that_joints_cannot_reach_is_no_error() -> None:
     plan = bik.plan_moves(UR5, [Line(shifted(y=0.3, z=-0.1), speed=15.0)], start_q=HOME, limits=LIMITS)
     [report] = plan.moves

@@ -13,7 +13,7 @@ from ..attack import Attack, BrokenError, Case
 Array = NDArray[np.float64]
 SAMPLES = 2000
 OFF_PATH = 1e-5
-SPEED, JERKY, SLOWER = 1e-3, 3e-3, 1.5e-3
+SPEED, JERKY, SLOWER = 1e-3, 2e-3, 1.5e-3
 ACCELERATION, JERK = 4.0, 80.0
 TURNED, TOLERANCE = 1e-4, 0.1
 """Largest angle beyond the task (rad), and tolerance of some tasks."""

@@ -78,10 +78,8 @@ impl JointPath {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::{Field, Limits, Profile};
     use crate::math::cubic_spline::SplineEnds;
     use crate::rng;
-    use crate::timing::{ConstantLimits, TimingOptions, time};
 
     fn spline(rows: &[f64], knots: &[f64]) -> JointPath {
         JointPath::spline(vec!["a".into()], rows, Some(knots), SplineEnds::NotAKnot).unwrap()
@@ -109,31 +107,6 @@ mod tests {
             inside.position(0.0, &mut ends[0]);
             inside.position(at, &mut ends[1]);
             assert!((ends[0][0] - rows[0]).abs() < 1e-13 && (ends[1][0] - rows[29]).abs() < 1e-12, "case {case}");
-        }
-    }
-
-    #[test]
-    fn motions_along_them_under_jerk_limits_do_not_pass_it_either() {
-        let names = || vec!["a".to_string(), "b".to_string()];
-        let limits = [(Field::Lower, 0.0), (Field::Upper, 1.0), (Field::Acceleration, 4.0), (Field::Jerk, 80.0)];
-        let limits = limits.into_iter().fold(Limits::none(names()), |limits, (field, value)| {
-            limits.replace(field, vec![Profile::Constant(value); 2]).unwrap()
-        });
-        let limits = ConstantLimits::new(&limits, "a test").unwrap();
-        let mut rng = rng::stream(7, 1);
-        for case in 0..40 {
-            let rests = 2 + rng.below(4);
-            let rows: Vec<f64> = (0..12)
-                .flat_map(|i| {
-                    let leaves = if i < rests { 0.0 } else { rng.uniform_in(0.0, 0.5) };
-                    [if case % 2 == 0 { leaves } else { 1.0 - leaves }, 0.05 + 0.9 * f64::from(i as u8) / 12.0]
-                })
-                .collect();
-            let path =
-                JointPath::spline(names(), &rows, None, SplineEnds::NotAKnot).unwrap().inside(&[0.0; 2], &[1.0; 2]);
-            let motion = time(&path, &limits, &TimingOptions::default()).unwrap();
-            let [(lowest, highest), _] = motion.position_range()[..] else { panic!("two joints") };
-            assert!(lowest > -1e-10 && highest < 1.0 + 1e-10, "case {case}: {lowest} to {highest}");
         }
     }
 

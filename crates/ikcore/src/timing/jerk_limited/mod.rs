@@ -122,6 +122,9 @@ fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, roun
         rate = rate.refined(&parts);
         constraints = Constraints::new(&clock, &rate, &rate.durations(), limits);
         faster_rate(&mut rate, &mut constraints)?;
+        if !rate.is_finite() {
+            return Ok(best);
+        }
         let (motion, slowdown) = played(path, &clock, &rate, limits)?;
         let saved = 1.0 - motion.duration() / best.duration();
         slowed = slowdown;
@@ -137,6 +140,9 @@ fn timed(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits, roun
         clock.speedup = slowed;
         constraints = Constraints::new(&clock, &rate, &rate.durations(), limits);
         faster_rate(&mut rate, &mut constraints)?;
+        if !rate.is_finite() {
+            return Ok(best);
+        }
         let (motion, _) = played(path, &clock, &rate, limits)?;
         if motion.duration() < best.duration() {
             best = motion;

@@ -94,4 +94,9 @@ impl RateSpline {
         let of_interval = |interval| GAUSS.into_iter().map(|point| share(interval, point)).sum::<f64>();
         (0..self.intervals()).map(|interval| self.length(interval) * of_interval(interval)).collect()
     }
+
+    /// Whether y is positive where the durations need it: rounding may spoil a refined rate between the places where limits are imposed.
+    pub(super) fn is_finite(&self) -> bool {
+        self.durations().iter().all(|duration| duration.is_finite())
+    }
 }
