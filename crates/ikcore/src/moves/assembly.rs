@@ -181,7 +181,7 @@ impl<'a> Assembly<'a> {
     /// Adds a run and the reports of its moves.
     fn add(&mut self, run: &Run<'a>, motion: Trajectory) -> Result<()> {
         let begin = self.now();
-        let times = path_times(&run.path, &motion)?;
+        let times = path_times(&run.path, &motion, self.around.limits)?;
         let mut start = begin;
         for (i, (part, window)) in run.parts.iter().zip(&run.windows).enumerate() {
             // A corner belongs to its two parts by halves.

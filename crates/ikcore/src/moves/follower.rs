@@ -127,12 +127,13 @@ impl<'a> Follower<'a> {
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let widened = self.bounds_from(q);
         // A joint at its limit moves off it where the task leaves it the freedom: a motion along a limit swings beyond.
-        let inside = self.tip.with_others_at(q, self.bounds.clone());
-        if !self.tip.task.is_whole()
-            && !inside.contains(q)
-            && let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside])
-        {
-            return Ok(track);
+        if !self.tip.task.is_whole() {
+            let inside = self.tip.with_others_at(q, self.bounds.clone());
+            if !inside.contains(q)
+                && let Ok(track) = self.follow_within(path, q, lead, [&widened, &inside])
+            {
+                return Ok(track);
+            }
         }
         self.follow_within(path, q, lead, [&widened, &widened])
     }

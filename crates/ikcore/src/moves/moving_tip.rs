@@ -25,8 +25,6 @@ pub(super) struct MovingTip<'a> {
     robot: Cow<'a, Robot>,
     pub number: usize,
     pub task: MoveTask,
-    /// The tip's frame, with the tool of the task if the robot has several tips.
-    frame: CheckedTask,
     /// The own joints of one of several tips; `None` for the only tip.
     arm: Option<OwnArm>,
 }
@@ -34,6 +32,8 @@ pub(super) struct MovingTip<'a> {
 /// The arm of one of several tips.
 #[derive(Debug, Clone)]
 struct OwnArm {
+    /// The tip's frame, with the tool of the task.
+    frame: CheckedTask,
     /// From the frame at which the own joints begin to the tip, with the tool of the task.
     robot: Robot,
     /// The own joints, as entries of q of the whole robot; empty where no joint moves the tip alone.
@@ -52,21 +52,20 @@ impl<'a> MovingTip<'a> {
     fn of(robot: &'a Robot, number: usize, given: Option<&Task>) -> Result<Self> {
         let task = MoveTask::of(given)?;
         let with_tool = |robot: &Robot| given.map_or(Ok(None), |given| given.robot(robot));
-        let frame = NamedTask { subject: Subject::Tip(number), task: given.copied(), tolerance: Tolerance::default() };
-        let mut frame = frame.validated()?;
         if robot.tip_count() == 1 {
-            frame.leave_tool();
             let robot = with_tool(robot)?.map_or(Cow::Borrowed(robot), Cow::Owned);
-            return Ok(Self { robot, number, task, frame, arm: None });
+            return Ok(Self { robot, number, task, arm: None });
         }
+        let frame = NamedTask { subject: Subject::Tip(number), task: given.copied(), tolerance: Tolerance::default() };
+        let frame = frame.validated()?;
         let arm = match robot.arm(number) {
-            Some(arm) => OwnArm {
-                robot: with_tool(&arm.robot)?.unwrap_or_else(|| arm.robot.clone()),
-                joints: arm.joints.clone(),
-            },
-            None => OwnArm { robot: robot.clone(), joints: vec![] },
+            Some(arm) => {
+                let robot = with_tool(&arm.robot)?.unwrap_or_else(|| arm.robot.clone());
+                OwnArm { frame, robot, joints: arm.joints.clone() }
+            }
+            None => OwnArm { frame, robot: robot.clone(), joints: vec![] },
         };
-        Ok(Self { robot: Cow::Borrowed(robot), number, task, frame, arm: Some(arm) })
+        Ok(Self { robot: Cow::Borrowed(robot), number, task, arm: Some(arm) })
     }
 
     /// The same tip with another task, which has the same tool.
@@ -86,12 +85,18 @@ impl<'a> MovingTip<'a> {
 
     /// Frame of the tip at a configuration.
     pub fn frame(&self, q: &[f64]) -> Frame {
-        self.frame.frame(&self.robot, q)
+        match &self.arm {
+            None => self.robot.tip(q),
+            Some(arm) => arm.frame.frame(&self.robot, q),
+        }
     }
 
     /// Frame of the tip at a configuration, whose Jacobian is written.
     pub fn frame_and_jacobian(&self, q: &[f64], columns: &mut Columns) -> Frame {
-        self.frame.frame_and_jacobian(&self.robot, q, columns)
+        match &self.arm {
+            None => self.robot.tip_and_jacobian(q, columns),
+            Some(arm) => arm.frame.frame_and_jacobian(&self.robot, q, columns),
+        }
     }
 
     /// Position of the tip at a configuration (m).

@@ -16,9 +16,10 @@ const NEARLY: f64 = 0.99;
 const GRIDPOINTS: usize = 240;
 const FOR_EACH_PIECE: usize = 2;
 
-/// Samples in each segment of a trajectory; and the excess over the speed asked for, relative to it, that counts as none at the quarters of
-/// a segment: for so short a time the whole motion is not slowed.
-const SAMPLES: usize = 4;
+/// Samples in each segment of a trajectory, and with jerk limits, under which the speed may be highest at a quarter of one; and the excess
+/// over the speed asked for, relative to it, that counts as none at the quarters: for so short a time the whole motion is not slowed.
+const SAMPLES: usize = 2;
+const JERKY_SAMPLES: usize = 4;
 const FOR_AN_INSTANT: f64 = 1e-3;
 
 /// Newton steps onto the path at each sample.
@@ -48,7 +49,7 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
     if !limits.limit_jerk() || asked.iter().all(|speed| speed.is_infinite()) {
         return Ok(motion);
     }
-    let (motion, reached) = at_most_asked(path, &asked, motion)?;
+    let (motion, reached) = at_most_asked((path, limits), &asked, motion)?;
     if !(NEARLY..1.0 - SLOWER).contains(&reached) {
         return Ok(motion);
     }
@@ -59,37 +60,42 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
         Err(_) => return Ok(motion),
         Ok(again) => again,
     };
-    let (again, _) = at_most_asked(path, &asked, again)?;
+    let (again, _) = at_most_asked((path, limits), &asked, again)?;
     Ok(if again.duration() < motion.duration() { again } else { motion })
 }
 
 /// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
-fn at_most_asked(path: &JointPath, asked: &[f64], motion: Trajectory) -> Result<(Trajectory, f64)> {
-    let reached = largest_ratio(path, asked, &motion)?;
+fn at_most_asked(
+    (path, limits): (&JointPath, &ConstantLimits),
+    asked: &[f64],
+    motion: Trajectory,
+) -> Result<(Trajectory, f64)> {
+    let reached = largest_ratio(path, &path_times(path, &motion, limits)?, asked);
     Ok((if reached > 1.0 + FASTER { motion.slowed(reached)? } else { motion }, reached))
 }
 
-/// Largest path speed relative to the one asked for.
-fn largest_ratio(path: &JointPath, asked: &[f64], motion: &Trajectory) -> Result<f64> {
+/// Largest path speed at these times, four to a segment, relative to the one asked for.
+fn largest_ratio(path: &JointPath, times: &[PathTime], asked: &[f64]) -> f64 {
     let ratio = |(i, at): (usize, &PathTime)| {
         let excused = if i % 2 == 1 { 1.0 + FOR_AN_INSTANT } else { 1.0 };
         at.rate / (excused * asked[path.locate(at.s).0])
     };
-    Ok(path_times(path, motion)?.iter().enumerate().map(ratio).fold(0.0, f64::max))
+    times.iter().enumerate().map(ratio).fold(0.0, f64::max)
 }
 
 /// Path parameters of a motion along a path from rest to rest, at the knots of the motion and between them.
 ///
 /// # Errors
 /// None in practice: the joints are the same.
-pub(super) fn path_times(path: &JointPath, motion: &Trajectory) -> Result<Vec<PathTime>> {
+pub(super) fn path_times(path: &JointPath, motion: &Trajectory, limits: &ConstantLimits) -> Result<Vec<PathTime>> {
     let n = path.joints().len();
+    let samples = if limits.limit_jerk() { JERKY_SAMPLES } else { SAMPLES };
     let [mut q, mut qd, mut qdd, mut position, mut slope] = [(); 5].map(|()| Point::from_elem(0.0, n));
     let [first, last] = [path.breaks()[0], path.breaks()[path.pieces()]];
     let mut times = vec![PathTime { t: 0.0, s: first, rate: 0.0 }];
     for ends in motion.knots().windows(2) {
-        for k in 1..=SAMPLES {
-            let t = ends[0] + (ends[1] - ends[0]) * k as f64 / SAMPLES as f64;
+        for k in 1..=samples {
+            let t = ends[0] + (ends[1] - ends[0]) * k as f64 / samples as f64;
             let before = times[times.len() - 1];
             motion.at(t, &mut q, &mut qd, &mut qdd)?;
             let (mut s, mut rate) = (before.s + before.rate * (t - before.t), before.rate);
