@@ -70,7 +70,10 @@ class Calibrations(Attack):
             raise BrokenError("the calibrated arm is worse", (found.rms_before, found.rms_after))
         if not abs(np.sqrt((after[kept] ** 2).mean()) - found.rms_after) < 1e-9 * size:
             raise BrokenError("the root mean square is not as told", found.rms_after)
-        if not (np.isfinite(found.covariance).all() and np.linalg.eigvalsh(found.covariance).min() > -1e-12):
+        if not np.isfinite(found.covariance).all():
+            raise BrokenError("the covariance is none")
+        spread = np.linalg.eigvalsh(found.covariance)
+        if spread.min() < -1e-11 * max(spread.max(), 1.0):  # more than rounding
             raise BrokenError("the covariance is none")
         known = found.identifiable
         if not 0 <= known.rank <= known.possible <= len(found.parameters):

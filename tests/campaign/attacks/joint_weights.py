@@ -18,9 +18,11 @@ limits = bik.Limits(velocity=1.0)
 trackers = [bik.Tracker(robot, start, dt=0.01, limits=limits, joint_weights=one) for one in (weights, None)]
 ends = []
 for tracker in trackers:
-    for k in range(1, 401):
+    for k in range(1, 1001):
         near = robot.fk(start)[:3, 3] + min(k / 30, 1.0) * np.array(by)
         step = tracker.step(near)
+        if k >= 400 and not step.message.startswith("on the way"):  # a way back takes the time that its joints need
+            break
     ends.append(step)
 """
 

@@ -193,10 +193,9 @@ for away, ticks, noise, rare, given in life:
 tracker.obstacles = scene
 for _ in range(round(4.0 / dt)):
     step = tracker.step(target)
-ways = 0  # a motion of the joints to a configuration on the target, which may take longer than that
-while step.message.startswith("on the way") and ways < round(60.0 / dt):
-    step, ways = tracker.step(target), ways + 1
-held = [tracker.step(target) for _ in range(round(1.0 / dt))]
+held, seconds = [tracker.step(target) for _ in range(round(1.0 / dt))], 1
+while held[-1].message.startswith("on the way") and seconds < 60:  # by a motion of the joints, which takes its time
+    held, seconds = [tracker.step(target) for _ in range(round(1.0 / dt))], seconds + 1
 """
 AT_REST = 1e-9  # rad, m: a joint that moves less in a tick stands
 SLOW = 1e-3  # rad/s, m/s
