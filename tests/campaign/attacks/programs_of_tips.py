@@ -22,7 +22,7 @@ def _tip(joints: list[arms.Joint], q: Array) -> Array:
 
 
 class ProgramsOfTips(Attack):
-    """Lines, joint moves and waits of two arms that share a joint; round numbers, and blends that cannot be."""
+    """Lines, joint moves and waits of two arms that share a joint; hard ones begin at limits and zeros, along axes."""
 
     name = "programs_of_tips"
     promise = "A move of one of several tips leads that tip as asked, while all others stay, or is refused by its name"
@@ -32,7 +32,7 @@ class ProgramsOfTips(Attack):
         shared = arms.easy_arm(random, 1)
         left, right = (arms.easy_arm(random, int(random.integers(5 if hard else 6, 8))) for _ in range(2))
         for joints in (shared, left, right):
-            arms.put(joints, random, False)
+            arms.put(joints, random, hard)
         n = 1 + len(left) + len(right)
         return {
             "shared": tuple(shared),

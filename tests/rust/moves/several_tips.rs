@@ -143,6 +143,16 @@ fn a_way_around_an_obstacle_leaves_the_other_arm() {
     assert!(largest(&plan, 0, "right_tool", |point| (point - right.translation.vector).norm()) < STILL);
     let last = at(&plan, plan.trajectory.duration());
     assert!((tip("left_tool", &last).translation.vector - goal.translation.vector).norm() < OFF_LINE);
+    // The way is no straight line of the joints, which would lead through the ball.
+    let way: Vec<f64> = last.iter().zip(&HOME).map(|(end, start)| end - start).collect();
+    let squared: f64 = way.iter().map(|way| way * way).sum();
+    let off_line = |t: f64| {
+        let gone: Vec<f64> = at(&plan, t).iter().zip(&HOME).map(|(q, start)| q - start).collect();
+        let along = gone.iter().zip(&way).map(|(gone, way)| gone * way).sum::<f64>() / squared;
+        gone.iter().zip(&way).map(|(gone, way)| (gone - along * way).abs()).fold(0.0, f64::max)
+    };
+    let duration = plan.trajectory.duration();
+    assert!((0..=SAMPLES).any(|i| off_line(duration * i as f64 / SAMPLES as f64) > 0.01));
 }
 
 #[test]

@@ -61,9 +61,12 @@ const SHORTEST: f64 = 5_000.0;
 /// [`Error::UnsupportedLimit`] if the curvature of the path jumps; [`Error::Interrupted`].
 pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &ConstantLimits) -> Result<Trajectory> {
     let motion = timed(path, profile, limits, REFINEMENTS)?;
-    match farther_inside(path, &motion, limits) {
-        Some(path) => timed(&path, profile, limits, REFINEMENTS),
-        None => Ok(motion),
+    let Some(inside) = farther_inside(path, &motion, limits) else { return Ok(motion) };
+    match timed(&inside, profile, limits, REFINEMENTS) {
+        Err(error @ Error::Interrupted) => Err(error),
+        // Nothing is found farther inside: the first motion stands.
+        Err(_) => Ok(motion),
+        again => again,
     }
 }
 
