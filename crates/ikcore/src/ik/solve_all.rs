@@ -87,7 +87,9 @@ impl SolutionSet {
         match (&self.obstruction, &self.miss) {
             (Some(_), _) => Status::OutOfReach,
             (None, Some(miss)) => miss.status,
-            (None, None) => Status::Solved,
+            (None, None) if !self.solutions.is_empty() => Status::Solved,
+            (None, None) if self.interrupted => Status::Interrupted,
+            (None, None) => Status::InCollision,
         }
     }
 
@@ -98,6 +100,7 @@ impl SolutionSet {
         }
         let count = match (self.solutions.len(), &self.miss) {
             (0, Some(miss)) => return message!["no solution; best miss: ", miss.message()],
+            (0, None) => return message!["no solution: ", self.status().advice()],
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
         };
@@ -348,4 +351,17 @@ fn is_known(robot: &Robot, solutions: &Solutions, q: &[f64], separation: f64) ->
         robot.turn_period(j).map_or(difference, |turn| difference - turn * (difference / turn).round())
     };
     solutions.iter().any(|other| (0..q.len()).all(|j| apart(j, other.q).abs() < separation))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_without_solutions_says_why() {
+        let set = |interrupted| SolutionSet { interrupted, ..SolutionSet::of(Solutions::new(1)) };
+        assert_eq!(set(true).status(), Status::Interrupted);
+        assert_eq!(set(false).status(), Status::InCollision);
+        assert!(set(false).message().to_string().starts_with("no solution: move the target"));
+    }
 }

@@ -23,6 +23,25 @@ pub struct Arrival {
     pub stamp: Option<f64>,
 }
 
+impl Arrival {
+    /// Checks velocity and stamp of targets that arrive in a tick that ends at `time` (s).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
+    pub(super) fn check(&self, time: f64) -> Result<()> {
+        if let Some(velocity) = &self.velocity {
+            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
+        }
+        let Some(stamp) = self.stamp else { return Ok(()) };
+        require_finite("stamp", &[stamp], |_| "value".into())?;
+        if stamp > time * (1.0 + f64::EPSILON) {
+            let expected = format!("at most {time}, the end of the tick (s)");
+            return Err(Error::out_of_range("stamp", &expected, stamp));
+        }
+        Ok(())
+    }
+}
+
 impl From<Target> for Arrival {
     fn from(target: Target) -> Self {
         Self { targets: smallvec![target], ..Self::default() }
@@ -116,30 +135,19 @@ impl TargetStream {
         self.keep_as_before();
     }
 
-    /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets,
-    /// and for targets that are older than the last ones or repeat them.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
-    pub fn take(&mut self, mut arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
-        let Some(Arrival { targets, velocity, stamp, .. }) = &mut arrival else { return Ok(None) };
+    /// Takes the [checked](Arrival::check) targets that arrived in the tick that ends at `time` (s). Returns their age then (s);
+    /// `None` without targets, and for targets that are older than the last ones or repeat them.
+    pub fn take(&mut self, mut arrival: Option<Arrival>, time: f64) -> Option<f64> {
+        let Arrival { targets, stamp, .. } = arrival.as_mut()?;
         let stamp = *stamp;
-        if let Some(velocity) = velocity {
-            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
-        }
         let measured = stamp.unwrap_or(time);
-        require_finite("stamp", &[measured], |_| "value".into())?;
-        if measured > time * (1.0 + f64::EPSILON) {
-            let expected = format!("at most {time}, the end of the tick (s)");
-            return Err(Error::out_of_range("stamp", &expected, measured));
-        }
         self.arrived = time;
         // Targets of an interrupted tick are replaced by the next ones.
         if measured < self.measured || stamp.is_some() && measured == self.measured {
-            return Ok(None);
+            return None;
         }
         if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(targets, time)) {
-            return Ok(None);
+            return None;
         }
         let interval = measured - self.measured;
         self.measured = measured;
@@ -150,7 +158,7 @@ impl TargetStream {
             }
         }
         self.last = arrival;
-        Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
+        Some((time - measured).clamp(0.0, LONGEST_AGE))
     }
 
     /// The timeout (s), if no target has arrived for longer at `time` (s).
