@@ -78,7 +78,7 @@ pub(crate) struct TorqueTerms {
     pub hold: ByJoint,
 }
 
-/// A number for each joint, of most arms without memory of its own.
+/// One number per joint, on the stack up to eight joints.
 type ByJoint = SmallVec<[f64; 8]>;
 
 /// A torque beyond its limit.
@@ -312,7 +312,7 @@ impl JointTorques {
     }
 }
 
-/// What of the torques a motion is judged by.
+/// Quantity that a [`TorqueFactor`] bounds.
 #[derive(Debug, Clone, Copy)]
 enum Judged {
     /// How much slower it must be.

@@ -27,7 +27,7 @@ const MOVES: f64 = 0.7;
 const ADDS: f64 = 0.15;
 const LEAVES_OUT: f64 = 0.05;
 
-/// Weights of duration and length in a cost of another quantity: they decide between motions that cost almost the same.
+/// Tie-breaking weights of duration and length in the cost.
 const OF_LENGTH: f64 = 0.01; // s/rad, in a duration
 const OF_DURATION: f64 = 0.1; // rad/s, in a joint travel
 const OF_TIP: f64 = 0.02; // m/s, in a tip travel

@@ -77,7 +77,7 @@ impl MoveTask {
         self.task
     }
 
-    /// Whether an arm of so many joints can move while its tip meets a pose.
+    /// Whether an arm with `dof` joints has self-motion while it meets the task at a pose.
     pub fn leaves_freedom(&self, dof: usize) -> bool {
         let kind = self.task.map_or(TaskKind::Pose, |task| task.kind);
         let of_orientation = match (kind, &self.band) {

@@ -19,7 +19,7 @@ pub struct Away {
 pub enum Way {
     /// No configuration on the target is known.
     Unknown,
-    /// One is known, and the arm is told to stay.
+    /// One is known, but recovery is switched off.
     Declined,
     /// One is known, but the straight way of the joints to it is not clear or would part tips that are held.
     Blocked,

@@ -51,7 +51,7 @@ pub(super) struct SafetyFilter {
     progress: ArmProgress,
 }
 
-/// Work of the safety filter, counted: for loops that must know their worst case.
+/// Work counters of the safety filter, for real-time budgets.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FilterWork {
     /// Intervals examined to certify motions.

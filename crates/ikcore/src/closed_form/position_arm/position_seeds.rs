@@ -47,7 +47,7 @@ const SLACK: f64 = 0.5;
 /// Difference of the angles (rad) of two seeds that lead to the same optimum.
 const SAME: f64 = 1e-4;
 
-/// What a descent may gain beyond a seed of arms with parallel axes in the middle, at least.
+/// Minimum gain assumed for a descent from a seed of an arm with parallel middle axes.
 const LEAST_RESERVE: f64 = 0.02;
 
 /// Values of one joint (rad).
