@@ -14,8 +14,9 @@ use crate::obstacle::Surroundings;
 use crate::rng::stream;
 use crate::robot::Robot;
 
-/// Configurations to choose from, and draws for each of them.
+/// Number of configurations to choose from.
 const CANDIDATES: usize = 300;
+/// Maximum number of draws for each of them.
 const DRAWS: usize = 30;
 /// Largest number of suggestions.
 const MOST: usize = 100;

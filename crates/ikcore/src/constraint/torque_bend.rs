@@ -40,9 +40,11 @@ pub(super) struct TorqueBend {
 /// Largest distances of a joint's torque from parabolas: of what holds the arm, and of the factors of (ds/dt)^2 and d2s/dt2.
 pub(crate) type Rest = [f64; 3];
 
-/// How many of these factors a call needs.
+/// Number of these factors in a call that needs holding torques alone.
 pub(super) const HOLD: usize = 1;
+/// The same with the factor of (ds/dt)^2.
 pub(crate) const HOLD_AND_SQUARE: usize = 2;
+/// The same with the factor of d2s/dt2 too.
 pub(crate) const ALL_FACTORS: usize = 3;
 
 /// What is known of a moving frame and of the load on it.

@@ -10,8 +10,9 @@ use crate::math::{Frame, Pose};
 use crate::task::{Components, Target, Task, TaskKind};
 use crate::wording::number;
 
-/// Angle (rad) and distance (m) that a motion may be off its task: smaller tolerances are refused.
+/// Angle (rad) that a motion may be off its task: smaller tolerances are refused.
 pub(super) const TURN_ACCURACY: f64 = 5e-5;
+/// Distance (m) that a motion may be off its task: smaller tolerances are refused.
 const ACCURACY: f64 = 1e-5;
 
 /// Directions about the axis of a pointing task that configurations are looked for at.

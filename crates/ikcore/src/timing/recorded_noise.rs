@@ -22,9 +22,9 @@ const ROUNDING: f64 = 1e-9;
 /// Part of the rows that are nearer to the line between their neighbours than the jitter is said to be.
 const MOST: f64 = 0.99;
 
-/// Tolerance that smooths noise, as a multiple of the jitter; and the largest one, as a part of the largest range of a joint: more is
-/// the shape of a motion.
+/// Tolerance that smooths noise, as a multiple of the jitter.
 const TOLERANCE: f64 = 2.0;
+/// Largest such tolerance, as a fraction of the widest range of a joint: more is the shape of a motion.
 const LARGEST: f64 = 0.02;
 
 /// Part of the duration that is left without the noise below which the noise counts as setting it.
