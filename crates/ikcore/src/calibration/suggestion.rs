@@ -25,10 +25,10 @@ const PASSES: usize = 8;
 /// Gain (of the logarithm of the determinant) that counts as none.
 const NO_GAIN: f64 = 1e-9;
 
-/// Configurations to suggest, and what they keep clear of.
+/// Number of configurations to suggest, and their surroundings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SuggestionOptions {
-    /// How many.
+    /// Number of suggestions.
     pub count: usize,
     /// Obstacles to keep clear of.
     pub surroundings: Surroundings,

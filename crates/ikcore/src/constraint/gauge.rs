@@ -144,7 +144,7 @@ impl Gauge {
         !matches!(self.kind, Kind::Face { .. })
     }
 
-    /// What it measures, in words.
+    /// Names the measured quantity.
     pub fn named(&self) -> String {
         let axis = |k: usize| ["x", "y", "z"][k];
         match self.kind {

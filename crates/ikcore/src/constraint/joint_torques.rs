@@ -74,7 +74,7 @@ pub(crate) struct TorqueTerms {
     pub of_change: ByJoint,
     /// Factors of (ds/dt)^2.
     pub of_square: ByJoint,
-    /// What holds the arm.
+    /// Torques that hold the arm.
     pub hold: ByJoint,
 }
 
@@ -315,7 +315,7 @@ impl JointTorques {
 /// Quantity that a [`TorqueFactor`] bounds.
 #[derive(Debug, Clone, Copy)]
 enum Judged {
-    /// How much slower it must be.
+    /// Factor by which the motion must be slower.
     Slowdown,
     /// The largest part of the limit of a joint, or of any.
     Share(Option<usize>),

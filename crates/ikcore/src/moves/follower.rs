@@ -216,7 +216,7 @@ impl<'a> Follower<'a> {
         self.project(&self.tip.task.target(pose), q, &bounds)
     }
 
-    /// What the tip has to meet at the length `s`.
+    /// Target of the tip at the length `s`.
     fn target(&self, path: &ToolPath, s: f64) -> PathTarget {
         self.tip.task.target(&path.pose(s))
     }

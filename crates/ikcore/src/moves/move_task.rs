@@ -1,4 +1,4 @@
-//! What the moves of a program must meet of their poses.
+//! Task of the moves of a program at their poses.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +55,7 @@ impl MoveTask {
         Self { task: self.task, band: self.band.map(|band| band.at_most(0.0)) }
     }
 
-    /// What the tip has to meet at `pose`.
+    /// Target of the tip at `pose`.
     pub fn target(&self, pose: &Frame) -> PathTarget {
         let pose = Target::Pose(*pose);
         // The task has been checked, and a pose has all that any task uses.

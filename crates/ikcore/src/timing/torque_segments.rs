@@ -52,17 +52,17 @@ pub(super) struct TorqueSegments<'a> {
     path: &'a JointPath,
     limits: &'a ConstantLimits,
     torques: &'a JointTorques,
-    /// The rests that are not worth halving a segment for, as a part of a limit.
+    /// Remainder, as a fraction of a limit, down to which a segment is halved.
     negligible: f64,
     limited: Vec<LimitedJoint>,
     nodes: TorqueNodes<'a>,
     derivatives: PathDerivatives,
     bend: BendScratch,
-    /// Rests over parts of unit length, by joint; those of all runs of segments so far, one after the other.
+    /// Remainders over parts of unit length, by joint, for all runs of segments so far.
     rests: Vec<Rest>,
     /// Torques over all segments so far.
     known: Vec<SegmentTorques>,
-    /// Those of the last grid, by index; one without bounds may stand for several segments.
+    /// Segments of the last grid, by index; one without bounds may represent several.
     last: Vec<usize>,
 }
 

@@ -68,7 +68,7 @@ impl Kept {
         let first = rows.len();
         self.each_row(rest, |row| {
             let [room, least_room] = [ROOM, LEAST_ROOM].map(|room| within(&row, room));
-            // What is desired is restored gradually, so that it does not compete with what is required.
+            // A desired tolerance is restored gradually, so that it does not compete with required ones.
             let whole = room - row.left;
             let wanted = if whole > 0.0 { (pace * whole).max(least_room - row.left) } else { whole };
             rows.push(response.row(&row.slope.map(|slope| -slope), wanted));

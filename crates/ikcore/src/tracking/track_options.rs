@@ -51,7 +51,7 @@ pub struct TrackOptions {
     pub ease: bool,
     /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
-    /// What is kept at every instant, between ticks too, and by the stop after each; nothing by default.
+    /// Constraints at every instant, between ticks too, and in the stop after each; none by default.
     pub keeps: Vec<Keep>,
     /// Whether an arm that comes no nearer to its target, though a configuration on it is known, goes there by a motion of its
     /// joints; true by default. It is for the library's own rule, and tasks without a region.

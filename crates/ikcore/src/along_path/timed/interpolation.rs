@@ -61,7 +61,7 @@ pub(crate) struct Interpolation<'a> {
     pub robot: &'a Robot,
     /// The path.
     pub tip_path: &'a TipPath,
-    /// What holds at every instant.
+    /// Constraints at every instant.
     pub keeps: PathKeeps<'a>,
     /// Behaviour at corners.
     pub corners: Corners,

@@ -47,7 +47,7 @@ pub(crate) struct Projection<'a> {
     kept: KeepTasks,
 }
 
-/// What holds at every instant of the motion, of the tip of a robot without the tool of its task.
+/// Constraints at every instant of the motion, of the tip of a robot without the tool of its task.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathKeeps<'a> {
     pub robot: &'a Robot,

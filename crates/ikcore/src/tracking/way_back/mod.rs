@@ -159,7 +159,7 @@ impl WayBack {
         }
     }
 
-    /// What keeps the arm away from its target, if its rule does not bring it nearer.
+    /// Obstruction that keeps the arm away from its target, if its rule does not bring it nearer.
     pub fn away(&self) -> Option<Away> {
         self.away
     }

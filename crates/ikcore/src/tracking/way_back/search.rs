@@ -64,7 +64,7 @@ pub(super) struct GoalSearch {
     begun: usize,
 }
 
-/// What the search of a tick draws on.
+/// Random numbers and monitor of the search of a tick.
 pub(super) struct Means<'a> {
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,
