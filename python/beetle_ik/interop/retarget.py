@@ -23,7 +23,7 @@ class Retargeter:
 
     Args:
         robot: the robot, loaded with a list of tips.
-        start: configuration at t = 0 (n,).
+        start_q: configuration at t = 0 (n,).
         points: tip of the robot for each point of the human, such as {"index": "index_tip"}.
         dt: time step (s).
         weights: cost of the squared distance of each point; those that are not named have 1. They count among points

@@ -1,4 +1,4 @@
-//! What was measured, one row per configuration.
+//! Measurements, one row per configuration.
 
 use nalgebra::{Unit, Vector3};
 

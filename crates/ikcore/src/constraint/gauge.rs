@@ -19,8 +19,9 @@ use crate::wording::number;
 /// Angle (rad) of a rotation beyond which no bound of its vector is sought on a whole interval.
 const MOST_TURNED: f64 = 4.0;
 
-/// Fraction by which rounding may exceed a tolerance, and the value (m, rad) for which it does where that is zero.
+/// Fraction by which rounding may exceed a tolerance.
 const ROUNDING: f64 = 1e-9;
+/// Value (m, rad) whose rounding is added to every tolerance, for those of zero.
 const LEAST: f64 = 1e-3;
 
 /// An error that stays within its tolerance.
@@ -143,7 +144,7 @@ impl Gauge {
         !matches!(self.kind, Kind::Face { .. })
     }
 
-    /// What it measures, in words.
+    /// Names the measured quantity.
     pub fn named(&self) -> String {
         let axis = |k: usize| ["x", "y", "z"][k];
         match self.kind {

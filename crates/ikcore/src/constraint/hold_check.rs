@@ -16,7 +16,7 @@ pub(crate) struct HoldCheck<'a> {
     rests: Vec<Rest>,
 }
 
-/// A line, and its largest distances from zero.
+/// Straight line in joint space.
 struct Line<'a> {
     from: &'a [f64],
     to: &'a [f64],

@@ -74,11 +74,11 @@ pub(crate) struct TorqueTerms {
     pub of_change: ByJoint,
     /// Factors of (ds/dt)^2.
     pub of_square: ByJoint,
-    /// What holds the arm.
+    /// Torques that hold the arm.
     pub hold: ByJoint,
 }
 
-/// A number for each joint, of most arms without memory of its own.
+/// One number per joint, on the stack up to eight joints.
 type ByJoint = SmallVec<[f64; 8]>;
 
 /// A torque beyond its limit.
@@ -312,10 +312,10 @@ impl JointTorques {
     }
 }
 
-/// What of the torques a motion is judged by.
+/// Quantity that a [`TorqueFactor`] bounds.
 #[derive(Debug, Clone, Copy)]
 enum Judged {
-    /// How much slower it must be.
+    /// Factor by which the motion must be slower.
     Slowdown,
     /// The largest part of the limit of a joint, or of any.
     Share(Option<usize>),

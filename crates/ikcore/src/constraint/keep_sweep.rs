@@ -18,7 +18,7 @@ const MOST_INTERVALS: usize = 150_000;
 /// Fraction of a tolerance by which the largest error found may exceed the true one.
 const SLACK: f64 = 0.01;
 
-/// Tolerance (m, rad) from which on it counts as this.
+/// Largest tolerance (m, rad) in the slack; wider ones count as this.
 const WIDE: f64 = 0.1;
 
 /// An error beyond its tolerance on a motion, or one that cannot be told to be within it.
@@ -61,7 +61,7 @@ struct Sample {
     seen: Vec<([f64; 3], Seen)>,
 }
 
-/// Values up to which the walker looks no closer: one for each gauge of each constraint.
+/// Stopping rule: bounds up to these values need no closer look, one per gauge of each constraint.
 trait Thresholds {
     /// Takes the values at a sample; false ends the walk.
     fn sampled(&mut self, keep: usize, values: &mut dyn Iterator<Item = f64>) -> bool;

@@ -51,7 +51,7 @@ impl<'a> Assembly<'a> {
     /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
     ///
     /// # Errors
-    /// Those of timings; [`Error::NotFound`] where something is in the way.
+    /// Those of timings; [`Error::NotFound`] where an obstacle or a constraint is in the way.
     pub fn add_all(
         &mut self,
         stages: &'a [Stage],

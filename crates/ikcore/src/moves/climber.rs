@@ -16,14 +16,13 @@ use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
 use crate::wording::number;
 
-/// Length past the place where a path is lost (m), at which its pose is solved for to learn why; also how exactly the end of the reach is
-/// found.
+/// Length (m) past the loss of a path at which its pose is solved to learn why; also the accuracy of the end of the reach.
 const BEYOND: f64 = 1e-3;
 
-/// What is said of robots with several tips that share joints.
+/// Note in errors of robots whose tips share joints.
 const SHARED: &str = "; joints that move another tip too stay where they are";
 
-/// What the search for configurations is about.
+/// Inputs of the search for configurations.
 pub(super) struct Climber<'a> {
     pub tips: &'a [MovingTip<'a>],
     pub limits: &'a ConstantLimits,

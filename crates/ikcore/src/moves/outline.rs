@@ -1,4 +1,4 @@
-//! What a program asks of the tip, before configurations are chosen.
+//! Stages of a program, before configurations are chosen.
 
 use nalgebra::Rotation3;
 

@@ -11,7 +11,7 @@ const LONGEST_WAIT: f64 = 1e6;
 /// One move of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Move {
-    /// What the arm does.
+    /// Kind of the move.
     pub kind: MoveKind,
     /// Radius (m) about the end of the move inside which the motion may round the corner to the next move. With zero, or less than the
     /// 1e-5 m that a path is kept to, it stops there.

@@ -34,7 +34,7 @@ pub(super) enum Dead {
     Path { path: usize, at: f64, cause: Cause },
 }
 
-/// What ends the following of a path.
+/// Reason why a path is lost.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cause {
     /// No configuration nearby continues it.

@@ -183,7 +183,7 @@ impl MotionCertificate {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from).norm());
             scene.others.obstacles.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
-                // What is not a number is near.
+                // A distance that is not a number counts as near.
                 if !(scene.others.obstacles[obstacle].shape.distance_to_segment(&[from, to], needed + reach)
                     >= needed + reach)
                 {

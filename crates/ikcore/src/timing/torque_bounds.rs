@@ -15,7 +15,7 @@ pub(super) type HalfPlane = [f64; 3];
 pub(super) struct TorqueBounds {
     /// From above, then from below.
     lines: Vec<Line>,
-    /// How many are from above.
+    /// Number of those from above.
     above: usize,
     /// The bound on x from half-planes that do not bound u.
     pub largest_x: f64,

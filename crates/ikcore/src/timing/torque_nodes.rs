@@ -25,7 +25,7 @@ pub(super) struct TorqueNodes<'a> {
 /// Terms of all joints (n,) at a node.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeTerms<'a> {
-    /// What holds the arm.
+    /// Torques that hold the arm.
     pub hold: &'a [f64],
     /// Factors of (ds/dt)^2.
     pub of_square: &'a [f64],

@@ -30,7 +30,7 @@ pub struct Step {
     pub iterations: usize,
     /// Whether this tick can bring every joint back within its position limits and slow it down to its velocity limit.
     pub inside_limits: bool,
-    /// What keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
+    /// Obstruction that keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
     pub away: Option<Away>,
     /// Why no target leads the arm, if none does.
     pub idle: Option<Idle>,

@@ -20,13 +20,13 @@ const MILD: f64 = 0.97;
 /// Part of a torque limit beyond which its gradient counts.
 const CLOSE: f64 = 0.8;
 
-/// Part of a torque limit that holds an arm at rest at most: an arm that used all of it could never move away again.
+/// Maximum fraction of a torque limit that holds an arm at rest: with all of it, the arm could never move away again.
 const LEFT_TO_MOVE: f64 = 0.995;
 
-/// Part of the torque that is left to a limit which a command takes.
+/// Fraction of the remaining torque that a command may use where little remains.
 const NEARLY_ALL: f64 = 0.95;
 
-/// Part of a torque limit that an arm may use beyond what holds it, where that is beyond the limit: without it, it could not begin to move.
+/// Fraction of a torque limit allowed on top of a holding torque beyond the limit: without it, the arm could not begin to move.
 const TO_MOVE: f64 = 0.02;
 
 /// Certificate; owns its scratch.
@@ -35,7 +35,7 @@ pub(super) struct StopTorques {
     torques: JointTorques,
     /// Largest torques (N m, N) of a command and the stop after it: the limits, unless the arm cannot be held where it is.
     allowed: Point,
-    /// Part of a limit that what holds the arm after the stop has to stay below, of an arm that leaves where it cannot be held.
+    /// Upper bound of the holding torque after the stop, as a fraction of the limit, while the arm leaves a configuration that it cannot hold.
     leaving: Option<f64>,
     point: TorquePoint,
     bend: BendScratch,
@@ -115,7 +115,7 @@ impl StopTorques {
         self.leaving = None;
     }
 
-    /// The joint that can hold the arm at rest at `q` the least, if one cannot.
+    /// Returns the joint farthest beyond its limit when holding the arm at `q`, if any.
     pub fn too_heavy(&mut self, q: &[f64]) -> Option<Overload> {
         let held = self.held_at(q);
         self.overload(&held, 0, 1.0 + TIGHT)
@@ -214,13 +214,13 @@ impl StopTorques {
         }
     }
 
-    /// Whether what holds the arm at rest after the command `q` and its stop leaves hardly any torque to move it.
+    /// Whether holding the arm after the command `q` and its stop takes nearly all of a torque limit.
     pub fn strains_after(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
         let held = self.held_at(&context.stop_after(q).rest());
         self.share(&held) > MILD
     }
 
-    /// Writes the gradient (n,) of what holds the arm at rest at `q` with too much of its limits: the sum of the squares, relative to the limits.
+    /// Writes the gradient (n,) of half the sum of squares of the holding torques at `q` beyond a part of their limits, relative to these.
     pub fn write_strain_gradient(&mut self, q: &[f64], sum: &mut [f64]) {
         sum.fill(0.0);
         let limits = Point::from_slice(self.torques.limits());

@@ -21,8 +21,9 @@ use crate::trajectory::polynomial;
 /// Limits that are kept.
 const KEPT: [TipField; 2] = [TipField::Speed, TipField::TurnSpeed];
 
-/// Fractions of a command tried, and how near to a limit ends the search.
+/// Number of fractions of a command tried.
 const TRIES: usize = 4;
+/// Relative distance from a limit at which the search ends.
 const NEAR: f64 = 1e-3;
 
 /// Ticks by which the straight line of a tick and the spline may be apart.

@@ -1,4 +1,4 @@
-//! What can be read of a session between its ticks.
+//! Readings of a session between its ticks.
 
 use std::sync::Arc;
 
@@ -99,7 +99,7 @@ impl Session {
         self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
     }
 
-    /// What is kept at every instant.
+    /// Constraints at every instant.
     pub fn keeps(&self) -> &[Keep] {
         self.safety.as_ref().and_then(|safety| safety.kept()).map_or(&[], Kept::keeps)
     }

@@ -132,7 +132,7 @@ impl Session {
         }
     }
 
-    /// What keeps the goal from its target; nothing while the arm stops.
+    /// Obstruction that keeps the goal from its target; `None` while the arm stops.
     pub(super) fn holds_goal(&self) -> Option<Holder> {
         self.safety.as_ref().filter(|_| self.stopping.is_none()).and_then(|safety| safety.holds_goal())
     }
