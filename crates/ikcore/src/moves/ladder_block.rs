@@ -12,7 +12,7 @@ pub(super) struct LadderBlock<'a> {
     pub goal: Option<(usize, &'a JointGoal)>,
     /// Number of the tip that it leads to a pose.
     pub tip: usize,
-    /// A configuration in which the joints that several tips share are as they are in this block.
+    /// Configuration with the joints that several tips share as in this block.
     pub stem: &'a [f64],
     /// The paths of the tip after it.
     pub paths: Vec<&'a ToolPath>,

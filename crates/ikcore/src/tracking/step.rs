@@ -93,7 +93,7 @@ impl Step {
         message![format!("{how}, {error} away{limits}{known}: "), advice]
     }
 
-    /// Whether the status is about where the arm is, target or not.
+    /// Whether the status concerns the configuration of the arm, whatever its target.
     fn is_obstructed(&self) -> bool {
         matches!(self.status, Status::InCollision | Status::HeldByTorque)
     }
