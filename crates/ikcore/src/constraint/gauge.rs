@@ -28,7 +28,7 @@ const LEAST: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gauge {
     kind: Kind,
-    /// Entry of the task that it is about.
+    /// Entry of the task that it bounds.
     pub entry: usize,
     /// Largest value (m, rad).
     pub tolerance: f64,
@@ -139,7 +139,7 @@ impl Gauge {
         (0..3).flat_map(both).collect()
     }
 
-    /// Whether the entry of a task is what it measures; a face of a region is not.
+    /// Whether it measures an entry of the task; a face of a region is none.
     pub fn is_of_task(&self) -> bool {
         !matches!(self.kind, Kind::Face { .. })
     }
@@ -209,7 +209,7 @@ impl Gauge {
         }
     }
 
-    /// A bound of the value on all configurations between these; infinite if nothing can be said.
+    /// A bound of the value on all configurations between these; infinite if none is known.
     pub fn bound<'s>(&self, points: impl Iterator<Item = &'s Seen> + Clone, bend: &TipBend) -> f64 {
         match self.kind {
             Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => {

@@ -155,7 +155,8 @@ impl Keep {
             .map(|gauge| gauge.in_words(gauge.value(&seen)))
     }
 
-    /// The error at `q` (n,) of whose tolerance the least is left, in words, and what is left: a fraction, of a region the distance (m).
+    /// Returns the remaining tolerance of the error at `q` (n,) nearest to its own, as a fraction, or for a region as a distance (m), and the
+    /// error in words.
     pub(crate) fn tightest_at(&self, robot: &Robot, q: &[f64]) -> Option<(f64, String)> {
         let seen = self.seen(&self.frame(robot, q));
         let left = |gauge: &&Gauge| {
@@ -275,5 +276,5 @@ pub(crate) fn refuse_broken(what: &str, keeps: &[Keep], robot: &Robot, q: &[f64]
     }
 }
 
-/// Tolerance (m, rad) below which the ways that keep it have no room for straight lines.
+/// Tolerance (m, rad) below which straight lines in joint space cannot keep it.
 const NARROW: f64 = 5e-3;

@@ -8,7 +8,7 @@ use crate::robot::Robot;
 use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
-/// Advice where a move leads into something.
+/// Advice where a move collides.
 const ADVICE: &str = "move the path or what is in the way, or lower the margin";
 
 /// Obstacles, links, constraints, and limits of torques.
@@ -78,7 +78,7 @@ impl MoveSurroundings<'_> {
     }
 }
 
-/// Advice where a move breaks what is to be kept.
+/// Advice where a move breaks a constraint.
 const ADVICE_KEEP: &str = "move the path, or widen the tolerance";
 
 /// Advice where a move leads to where a joint cannot hold the arm.

@@ -1,4 +1,4 @@
-//! The search for the configurations of a program, and words for what it does not find.
+//! The search for the configurations of a program, and the errors where it fails.
 
 use super::follower::{Lost, Stray};
 use super::ladder::Ladder;
@@ -127,8 +127,8 @@ impl Climber<'_> {
         format!("joint '{name}' would have to go to {value}, beyond its limits [{lower}, {upper}]")
     }
 
-    /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
-    /// and it is not proven that its end has none.
+    /// Returns the length along a move beyond which it has no configuration, and why. `None` if some are found where its path was lost, at
+    /// `at`, and it is not proven that its end has none.
     fn end_of_reach(
         &self,
         block: usize,

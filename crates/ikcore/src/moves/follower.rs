@@ -35,7 +35,7 @@ const HALVINGS: i32 = 10;
 const ACCURACY: [f64; 2] = [2e-6, 2e-5];
 /// The same relative to the length between knots, so that the speed of the tip is that of the parameter.
 const SLOPE_ACCURACY: f64 = 5e-5;
-/// Fractions of an interval at which the tip is looked at.
+/// Fractions of an interval at which the distance of the tip from its path is checked.
 const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Change of the joints (rad, m) between knots that counts as rest: a path in joint space cannot.
 const REST: f64 = 1e-12;
@@ -53,14 +53,14 @@ pub(super) struct Track {
     pub rows: Vec<f64>,
 }
 
-/// Where a path is lost.
+/// Place where a path is lost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lost {
     /// Length up to there (m).
     pub at: f64,
 }
 
-/// Why a track cannot be refined.
+/// Reason why a track cannot be refined.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stray {
     Lost(Lost),
@@ -70,7 +70,7 @@ pub(super) enum Stray {
         joint: usize,
         value: f64,
     },
-    /// At the length `at` (m) the arm need not move on, so free does its task leave the tip.
+    /// At the length `at` (m) the arm need not move on: its task leaves the tip that free.
     Still {
         at: f64,
     },
@@ -101,7 +101,7 @@ impl Track {
     }
 }
 
-/// Where the self-motion of a redundant arm leads.
+/// Direction of the self-motion of a redundant arm: towards a configuration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lead<'a> {
     /// Number of the tip whose arm is led.
@@ -126,7 +126,7 @@ impl<'a> Follower<'a> {
         Self { tip, bounds, linearization: Linearization::default(), evaluations: 0 }
     }
 
-    /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
+    /// Follows the path from the configuration `q` at its start, in the longest steps allowed. Without a `lead`, the joints
     /// move as little as they can.
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let widened = self.bounds_from(q);

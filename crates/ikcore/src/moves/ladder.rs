@@ -350,7 +350,7 @@ impl<'a> Ladder<'a> {
         (below.max(above) > limit_rounding(lower, upper)).then_some(if below > above { lowest } else { highest })
     }
 
-    /// Where on the paths a joint first leaves its limits.
+    /// Returns the place on the paths at which a joint first leaves its limits.
     fn beyond(&self, tracks: &[Track], joint: usize, value: f64) -> Dead {
         let cause = || Cause::Limit { joint, value };
         for (path, track) in tracks.iter().enumerate() {

@@ -66,7 +66,7 @@ impl MoveConfigurations<'_, '_> {
         found.iter().map(|own| self.tip.whole(own, reference)).collect()
     }
 
-    /// Configurations near a pose of which the task asks a part.
+    /// Configurations that meet a partial task near a pose.
     fn of_part(
         &self,
         pose: &Pose,

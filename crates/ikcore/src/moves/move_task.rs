@@ -15,10 +15,10 @@ pub(super) const TURN_ACCURACY: f64 = 5e-5;
 /// Distance (m) that a motion may be off its task: smaller tolerances are refused.
 const ACCURACY: f64 = 1e-5;
 
-/// Directions about the axis of a pointing task that configurations are looked for at.
+/// Number of directions about the axis of a pointing task at which configurations are sought.
 const SPINS: usize = 16;
 
-/// The part of a pose that counts, and how far the tip may be turned from it. Its position stays on the path, whose length it measures.
+/// Part of a pose that counts, and tolerance of the tip's orientation. Its position stays on the path, whose length it measures.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct MoveTask {
     /// `None`: whole poses.

@@ -10,10 +10,10 @@ use crate::plan::SpeedBound;
 use crate::timing::{ConstantLimits, OneLimit};
 use crate::trajectory::Trajectory;
 
-/// Shortfall of the rate of the path, as a fraction of the speed asked for, that counts as none: that of the tip is then below 1e-3.
+/// Tolerated shortfall of the rate of the path, as a fraction of the requested speed: that of the tip is then below 1e-3.
 const SHORT: f64 = 8e-4;
 
-/// Part of the tightest limit's share at which another one is still named, so that names do not alternate between joints that share a motion.
+/// Fraction of the tightest limit's share above which the limit before is still named, so that names do not alternate between joints.
 const STILL: f64 = 0.95;
 
 /// Substitute for the tightest limit of an arm without joints.

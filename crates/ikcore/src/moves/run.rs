@@ -38,7 +38,7 @@ pub(super) struct RunPart<'a> {
     pub path: JointPath,
 }
 
-/// Where a part of a run is in it.
+/// Interval of a run that one of its parts covers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     /// Parameter of the run at which it begins.
@@ -119,7 +119,7 @@ impl<'a> Run<'a> {
             let to = corners.get(i).map_or(end, |corner| corner.left);
             let window = Window { begin: at, from, to };
             let mut before = from;
-            // The spline rings beside a corner, by less the finer its knots are there; most runs do without.
+            // Finer knots beside a corner keep the spline from ringing there; most runs need none.
             let beside = |corner: Option<&JointCorner>| {
                 corner
                     .filter(|_| intervals > INTERVALS)

@@ -40,7 +40,7 @@ pub(super) struct PathTime {
 
 /// The fastest motion along `path` that keeps the largest path speeds of its pieces.
 ///
-/// With jerk limits the whole motion is at last slowed by a little, and with it the speeds; so these are then asked for once more.
+/// With jerk limits the whole motion ends up slightly slowed, and its speeds with it; higher ones are then requested once.
 ///
 /// # Errors
 /// Those of `time_optimal`.
@@ -67,7 +67,7 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
     Ok(if again.duration() < motion.duration() { again } else { motion })
 }
 
-/// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
+/// Slows the whole motion if it exceeds the requested speeds. Returns it, and the largest fraction of them that it reached before.
 fn at_most_asked(
     (path, limits): (&JointPath, &ConstantLimits),
     asked: &[f64],

@@ -1,4 +1,4 @@
-//! Constraints on the command of a tracked arm, from what is to be kept at every instant.
+//! Rows on the command of a tracked arm, from constraints that hold at every instant.
 //!
 //! Each error of a constraint limits how far the rest configuration may move towards its tolerance, as a static body does for its
 //! distance in `around_arm`.
@@ -92,7 +92,7 @@ impl Kept {
     pub fn add_goal_rows(&mut self, q: &[f64], rows: &mut Vec<Row>) -> bool {
         let first = rows.len();
         self.each_row(q, |row| {
-            // A goal keeps slightly more than the arm that pursues it.
+            // A goal keeps slightly more of its tolerance than the arm that pursues it.
             let gradient = row.slope.map(|slope| -slope);
             let least = 2.0 * within(&row, ROOM) - row.left + dot(&gradient[..q.len()], q);
             rows.push(Row { gradient, least, softness: SOFTNESS });

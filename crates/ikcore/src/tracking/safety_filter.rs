@@ -97,7 +97,7 @@ impl InTheWay {
 }
 
 impl SafetyFilter {
-    /// Filter of an arm with these limits, in `space` if collisions are to be avoided, that keeps what is `kept`.
+    /// Filter of an arm with these limits, in `space` if collisions are to be avoided, with the constraints `kept`.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -387,7 +387,7 @@ impl SafetyFilter {
         true
     }
 
-    /// Sets the rows of a goal at `q`. Returns what is in its way.
+    /// Sets the rows of a goal at `q`. Returns its obstructions.
     fn set_goal_rows(&mut self, q: &[f64]) -> InTheWay {
         let Self { around, kept, rows, .. } = self;
         rows.rows.clear();

@@ -1,8 +1,8 @@
 //! Certificate of the joint torques of a command and of the stop after it, at every tick.
 //!
-//! At a tick the velocity of a joint is its step over the tick, and its acceleration the change of its steps: what the commands say. Between
-//! ticks at which the deceleration of a joint jumps or bends, torques are within a rest of the parabolas through three of their values; ticks
-//! in between are examined only where that does not suffice, down to every one.
+//! At a tick the velocity of a joint is its step over the tick, and its acceleration the change of its steps, both from the commands. Between
+//! ticks at which the deceleration of a joint jumps or bends, torques are within a remainder (`Rest`) of the parabolas through three of their
+//! values; ticks in between are examined only where that does not suffice, down to every one.
 
 use super::command_and_stop::CommandAndStop;
 use super::step_context::StepContext;
@@ -17,7 +17,7 @@ use crate::robot::Robot;
 /// Part of a torque limit that a milder stop would use.
 const MILD: f64 = 0.97;
 
-/// Part of a torque limit beyond which its gradient counts.
+/// Fraction of a torque limit above which the gradient of a torque counts.
 const CLOSE: f64 = 0.8;
 
 /// Maximum fraction of a torque limit that holds an arm at rest: with all of it, the arm could never move away again.
@@ -94,8 +94,8 @@ impl StopTorques {
         Ok(Some(Self { torques, allowed, leaving: None, point, bend, rests, ends, gradients, beyond }))
     }
 
-    /// Allows the torques that an arm needs which cannot be held at `q`, nor where it comes to `rest`: those that hold it at either, and a
-    /// little more to move, until [`allow_limits`](Self::allow_limits). After a command and its stop it has to be easier to hold than at `rest`.
+    /// Allows higher torques to an arm that cannot be held at `q` nor at `rest`: those that hold it at either, and a little more to move,
+    /// until [`allow_limits`](Self::allow_limits). After a command and its stop, the arm has to be easier to hold than at `rest`.
     pub fn allow_holding(&mut self, q: &[f64], rest: &[f64]) {
         for held_at in [q, rest] {
             let held = self.held_at(held_at);
@@ -109,7 +109,7 @@ impl StopTorques {
         }
     }
 
-    /// Allows what the limits do.
+    /// Allows torques up to the limits alone.
     pub fn allow_limits(&mut self) {
         self.allowed.copy_from_slice(self.torques.limits());
         self.leaving = None;
@@ -295,7 +295,7 @@ impl StopTorques {
         })
     }
 
-    /// Writes the rests of a stop.
+    /// Writes the remainders of a stop.
     fn bound(&mut self, context: &StepContext<'_>, motion: &StoppedMotion<'_>) {
         let Self { torques, bend, rests, .. } = self;
         let Some(limited) = context.limited else { return };
@@ -365,7 +365,7 @@ impl StopTorques {
             for side in [-1.0, 1.0] {
                 let growth = side * (to[j] - from[j]);
                 let all = limit - side * from[j] - (side * self.drag(rates[j], j)).max(0.0);
-                // Of little, nearly all: an arm that holds itself with nearly all of a limit can still move.
+                // Nearly all of a small remainder may be used, so that an arm held with most of a limit can still move.
                 let room = (all - (1.0 - MILD) * limit).max(NEARLY_ALL * all);
                 if growth > room {
                     part = part.min((room / growth).max(0.0));

@@ -104,7 +104,7 @@ impl Session {
         self.safety.as_ref().and_then(|safety| safety.kept()).map_or(&[], Kept::keeps)
     }
 
-    /// The constraint nearest to its tolerance, in words; `None` if nothing is kept.
+    /// The constraint nearest to its tolerance, in words; `None` without constraints.
     pub fn tightest(&self) -> Option<String> {
         self.safety.as_ref()?.kept()?.tightest_at(&self.arm.q)
     }

@@ -47,7 +47,7 @@ const RESTING: f64 = 0.02;
 /// Least decrease of the error (m/rad) that a joint at its limit prevents; small, since a stretched elbow changes little.
 const SLOPE: f64 = 1e-4;
 
-/// Fraction of the error of the resting arm that the goal may have.
+/// Largest error of a goal, as a fraction of that of the resting arm.
 const BETTER: f64 = 0.8;
 
 /// Error of a descent, relative to that at rest, below which the rule of a moving arm reaches the target.

@@ -17,7 +17,7 @@ use crate::task::Target;
 use crate::tracking::progress::time_of_way;
 use crate::tracking::step_context::StepContext;
 
-/// Evaluations of a descent, and of all work in a tick.
+/// Evaluation budget of a descent, and of a tick.
 pub(super) const DESCENT: usize = 40;
 
 /// Maximum number of drawn starts, the first half of them at increasing distances.
