@@ -35,8 +35,8 @@ impl ConstantLimits {
     /// The limits of a path without a robot; `method` names the call in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for limits that vary over time and for joints without an acceleration limit;
-    /// [`Error::NegativeLimit`], [`Error::EmptyRange`].
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and for joints without an acceleration
+    /// limit; [`Error::NegativeLimit`](crate::Error::NegativeLimit), [`Error::EmptyRange`](crate::Error::EmptyRange).
     pub fn new(limits: &Limits, method: impl Into<Message>) -> Result<Self> {
         let method = method.into();
         let remedy = "when a point of the path is passed is what it looks for; give numbers";
@@ -51,9 +51,9 @@ impl ConstantLimits {
     /// The limits of a path of `robot`, with those of its tips; `method` names the call in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for limits that vary over time, for joints without an acceleration limit, and for limits of a tip that a
-    /// rotation vector carries; [`Error::OutOfRange`] for a limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`],
-    /// [`Error::WrongLength`].
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time, for joints without an acceleration limit,
+    /// and for limits of a tip that a rotation vector carries; [`Error::OutOfRange`](crate::Error::OutOfRange) for a limit of zero,
+    /// [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit), [`Error::WrongLength`](crate::Error::WrongLength).
     pub fn of_path(robot: &Robot, limits: &Limits, method: impl Into<Message>) -> Result<Self> {
         let method = method.into();
         let constant = Self::for_robot(robot, Some(limits), method.clone())?;
@@ -64,8 +64,9 @@ impl ConstantLimits {
     /// The limits for `robot`; `None` means its own. `method` names the planner in errors.
     ///
     /// # Errors
-    /// [`Error::UnsupportedLimit`] for limits that vary over time, [`Error::OutOfRange`] for a velocity, acceleration or
-    /// jerk limit of zero, [`Error::EmptyRange`], [`Error::NegativeLimit`], [`Error::WrongLength`].
+    /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time, [`Error::OutOfRange`](crate::Error::OutOfRange) for a
+    /// velocity, acceleration or jerk limit of zero, [`Error::EmptyRange`](crate::Error::EmptyRange), [`Error::NegativeLimit`](crate::Error::NegativeLimit),
+    /// [`Error::WrongLength`](crate::Error::WrongLength).
     pub(crate) fn for_robot(robot: &Robot, limits: Option<&Limits>, method: impl Into<Message>) -> Result<Self> {
         let limits = limits.cloned().unwrap_or_else(|| Limits::of(robot));
         limits.require_for(robot)?;
