@@ -10,7 +10,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
-use crate::task::{Aims, Assessment, Criterion, Goals, Target, TipError, Tolerance};
+use crate::task::{Aims, Assessment, Components, Criterion, Goals, Target, TipError, Tolerance};
 
 /// Number of starts of the approach to a target out of reach.
 pub(super) const APPROACHES: usize = 8;
@@ -132,6 +132,23 @@ impl<'m, 'p> Attempt<'m, 'p> {
         let status = run(&once, &mut evaluator, x0);
         self.budget.add(&evaluator);
         (status, Point::from_slice(&evaluator.best().x))
+    }
+
+    /// Runs a single start from `x0`, by the weights of the joints, to a target itself whose tolerances are a band. Returns its end if it
+    /// meets the target.
+    pub fn search_once_without_band(&mut self, x0: &[f64]) -> Option<Point> {
+        let (target, criterion) = self.problem.only_target().filter(|(_, criterion)| criterion.has_band())?;
+        let components = criterion.components.map(|components| Components { tolerance: None, ..components });
+        let exact = Criterion { components, tolerance: Tolerance::default(), ..*criterion }.into();
+        let MultiStart { solver, rule } = self.context.solver().restarted_descent()?;
+        let once = MultiStart { solver, rule: RestartRule { max_starts: 1, ..rule } };
+        let mut problem = Problem::new(self.context.robot(), Aims::of_one(&exact, target));
+        let objective: &mut dyn Differentiable = &mut problem;
+        let bounds = self.context.weighted_bounds();
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        let status = run(&once, &mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status == Status::Solved).then(|| Point::from_slice(&evaluator.best().x))
     }
 
     /// Builds the solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.

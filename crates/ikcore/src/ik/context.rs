@@ -187,7 +187,7 @@ impl<'a> SolveContext<'a> {
     /// # Errors
     /// [`Error::Contradiction`].
     pub(super) fn require_one_level(&self) -> Result<()> {
-        if let Some(first) = self.tasks.iter().find_map(|task| task.first) {
+        if let Some(first) = self.tasks.iter().find_map(|task| task.first).filter(|_| !self.options.whole_only) {
             let problem = message![
                 Setting::First(first.name()),
                 " has no effect where all solutions are asked for, which meet the whole pose: solve for one configuration"

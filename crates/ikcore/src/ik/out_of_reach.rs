@@ -32,13 +32,14 @@ pub(super) fn obstruction(attempt: &Attempt<'_, '_>, count: Option<usize>) -> St
     }
 }
 
-/// Result without a solution, at the end of the best of a few descents, the first of them from `from`. Where a part of the pose comes first,
-/// another search follows: it begins at `from`.
+/// Result without a solution, at the end of the best of a few descents, the first of them from `from`; at `from` itself where only whole
+/// solutions count, or a search for the part of the pose that comes first follows.
 #[cold]
 pub(super) fn unreachable_result(attempt: &mut Attempt<'_, '_>, from: Point, obstruction: String) -> Solution {
     let is_ordered =
         attempt.problem.only_target().is_some_and(|(target, _)| attempt.context.comes_first(target).is_some());
-    let mut solution = attempt.approached(&from, if is_ordered { 0 } else { APPROACHES });
+    let stays = is_ordered || attempt.context.options().whole_only;
+    let mut solution = attempt.approached(&from, if stays { 0 } else { APPROACHES });
     if solution.status != Status::Solved {
         solution.obstruction = obstruction;
     }
