@@ -72,7 +72,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             return self.explained(status, q);
         };
         if self.problem.reach_shortfall(bounds).is_some() {
-            let q = self.approach(&descent, x0, APPROACHES);
+            let q = self.approach(&descent, x0, APPROACHES, usize::MAX);
             return self.explained(Status::OutOfReach, q);
         }
         let (status, q) = self.search(bounds, x0, self.budget.reserve());
@@ -195,8 +195,14 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Point::from_slice(&evaluator.best().x)
     }
 
-    /// Returns the best of `approaches` descents towards a target that cannot be reached.
-    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64], approaches: usize) -> Point {
+    /// Returns the best of `approaches` descents towards a target that cannot be reached, each of at most this many `evaluations`.
+    pub fn approach(
+        &mut self,
+        descent: &LevenbergMarquardt,
+        x0: &[f64],
+        approaches: usize,
+        evaluations: usize,
+    ) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
         for approach in 0..approaches {
@@ -204,7 +210,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
                 self.next_start(&mut x);
                 self.budget.restarts += 1;
             }
-            let (_, q) = self.descend(descent, x.clone());
+            let (_, q) = self.descend_some(descent, x.clone(), evaluations);
             let value = self.problem.assess(&q).score.value;
             if best.as_ref().is_none_or(|(least, _)| value < *least) {
                 best = Some((value, q));
@@ -214,9 +220,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// Approaches a target that cannot be reached, and returns the result.
-    pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
+    pub fn approached(&mut self, x0: &[f64], approaches: usize, evaluations: usize) -> Solution {
         let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
-        let q = self.approach(&descent, x0, approaches);
+        let q = self.approach(&descent, x0, approaches, evaluations);
         self.explained(Status::OutOfReach, q)
     }
 

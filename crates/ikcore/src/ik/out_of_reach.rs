@@ -5,8 +5,12 @@ use super::solution::Solution;
 use crate::objective::Point;
 use crate::solver::Status;
 
-/// Descents towards the target, from the configuration known and from others.
+/// Number of descents towards the target, the first from the configuration known. On four arms the better of two ends as near, in the
+/// median, as many long ones.
 const APPROACHES: usize = 2;
+
+/// Maximum number of evaluations of each.
+const STEPS: usize = 8;
 
 /// Tolerance (m, rad) beyond which a pose without solutions, and without candidates near one, may still be reached.
 const WIDE: f64 = 1e-5;
@@ -39,7 +43,7 @@ pub(super) fn unreachable_result(attempt: &mut Attempt<'_, '_>, from: Point, obs
     let is_ordered =
         attempt.problem.only_target().is_some_and(|(target, _)| attempt.context.comes_first(target).is_some());
     let stays = is_ordered || attempt.context.options().whole_only;
-    let mut solution = attempt.approached(&from, if stays { 0 } else { APPROACHES });
+    let mut solution = attempt.approached(&from, if stays { 0 } else { APPROACHES }, STEPS);
     if solution.status != Status::Solved {
         solution.obstruction = obstruction;
     }

@@ -249,7 +249,7 @@ pub fn nearest_miss(
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let start = options.each.start.as_deref().map(|q| context.hint(q)).transpose()?;
     let reference = start.as_deref().map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
-    Ok(attempt.approached(&reference, APPROACHES))
+    Ok(attempt.approached(&reference, APPROACHES, usize::MAX))
 }
 
 /// Result of the closed form, with solutions at least `separation` apart.
