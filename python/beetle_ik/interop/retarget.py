@@ -63,7 +63,7 @@ class Retargeter:
         self.transform = np.eye(4)
         """Rotation and translation (4, 4) from the human's frame to that of the robot's base, after the scale."""
         self.offsets = {name: np.zeros(3) for name in self.points}
-        """What is added to each point in the frame of the base (3,) (m)."""
+        """Offset of each point in the frame of the base (3,) (m)."""
 
     def fit(
         self,

@@ -1,4 +1,4 @@
-//! The search for the configurations of a program, and words for what it does not find.
+//! The search for the configurations of a program, and the errors where it fails.
 
 use super::follower::{Lost, Stray};
 use super::ladder::Ladder;

@@ -53,14 +53,14 @@ pub(super) struct Track {
     pub rows: Vec<f64>,
 }
 
-/// Where a path is lost.
+/// Place where a path is lost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lost {
     /// Length up to there (m).
     pub at: f64,
 }
 
-/// Why a track cannot be refined.
+/// Reason why a track cannot be refined.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stray {
     Lost(Lost),

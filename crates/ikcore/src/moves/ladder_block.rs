@@ -8,7 +8,7 @@ use super::tool_path::ToolPath;
 /// A block of a program.
 #[derive(Debug)]
 pub(super) struct LadderBlock<'a> {
-    /// The joint move at its start; `None` for what comes before the first joint move.
+    /// The joint move at its start; `None` for the block before the first joint move.
     pub goal: Option<(usize, &'a JointGoal)>,
     /// Number of the tip that it leads to a pose.
     pub tip: usize,

@@ -13,7 +13,7 @@
 //! | `ladder_block`, `rung` | blocks of a program, and configurations at their starts |
 //! | `ladder`, `climber` | configurations for the whole program, and words for where there are none |
 //! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
-//! | `timing` | the fastest motion at the speed asked for |
+//! | `timing` | the fastest motion at the requested speed |
 //! | `report` | what slows a move, and when |
 //! | `assembly` | the motion of all steps |
 //! | `program_planner` | the plan for one task |

@@ -68,7 +68,7 @@ pub fn plan_moves(
     Ok(plan)
 }
 
-/// The same tips with tasks that ask for more: without tolerances where there are some, and for whole poses.
+/// The same tips with stricter tasks: without tolerances where there are some, and for whole poses.
 fn tighter<'a>(tips: &[MovingTip<'a>]) -> impl Iterator<Item = Vec<MovingTip<'a>>> {
     let all = |tighter: fn(&MoveTask) -> MoveTask| tips.iter().map(|tip| tip.with_task(tighter(&tip.task))).collect();
     let has_tolerance = tips.iter().any(|tip| tip.task.has_tolerance());

@@ -50,7 +50,7 @@ pub enum MoveKind {
     Wait(f64),
 }
 
-/// Where a joint move ends.
+/// End of a joint move.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointGoal {
     /// At a configuration (n,) (rad, m).
@@ -83,7 +83,7 @@ impl Move {
         self.is_cartesian() || matches!(self.kind, MoveKind::Joints(JointGoal::Pose(_)))
     }
 
-    /// Speed of the tip that is asked for (m/s).
+    /// Requested speed of the tip (m/s).
     pub(super) fn speed(&self) -> Option<f64> {
         match self.kind {
             MoveKind::Line { speed, .. } | MoveKind::Arc { speed, .. } => speed,

@@ -25,7 +25,7 @@ impl Rung {
     }
 }
 
-/// Why a block has no rung.
+/// Reason why a block has no rung.
 #[derive(Debug)]
 pub(super) enum Dead {
     /// The goal of the joint move has no configuration: why.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::wording::number;
 
-/// When a move was made, how fast, and what slowed it.
+/// Times of a move, its speed, and the limits that slowed it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MoveReport {
     /// Its name, if it has one.
@@ -44,7 +44,7 @@ pub enum MoveCourse {
     Rest,
 }
 
-/// A limit that keeps the tip below the speed asked for.
+/// A limit that keeps the tip below the requested speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedBound {
     /// The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed".

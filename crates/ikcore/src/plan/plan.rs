@@ -36,7 +36,7 @@ pub struct Plan {
     /// the smallest distance.
     #[serde(with = "stored_clearance")]
     pub clearance: Option<Clearance>,
-    /// Why no clear motion was found, if that is so.
+    /// Reason why no clear motion was found, if none was.
     pub obstruction: Option<String>,
     /// Kind of measurement that shows the robot itself, if that is the obstruction.
     pub own_points: Option<Sensed>,
@@ -85,7 +85,7 @@ pub struct Plan {
 pub struct Freed {
     /// The smallest distance at the start (m), below the margin; negative by the depth of an overlap.
     pub clearance: f64,
-    /// The time from which on the margin is kept (s).
+    /// Time after which the margin is kept (s).
     pub until: f64,
 }
 

@@ -15,7 +15,7 @@ pub(super) const AIMED_AT: f64 = 0.999;
 const NARROW: f64 = 1e-5;
 
 impl Criterion {
-    /// Criterion whose value is what lies beyond the tolerances.
+    /// Criterion whose value is the excess over the tolerances.
     pub(crate) fn beyond_tolerance(self) -> Self {
         Self { beyond: true, ..self }
     }

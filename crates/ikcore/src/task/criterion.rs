@@ -22,7 +22,7 @@ pub struct Criterion {
     pub region: Option<Region>,
     /// Value of a tip outside its region.
     pub outside: Outside,
-    /// Whether the value is what lies beyond the tolerances, instead of the whole error.
+    /// Whether the value is the excess over the tolerances, instead of the whole error.
     #[serde(skip)]
     pub beyond: bool,
 }

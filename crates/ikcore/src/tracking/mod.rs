@@ -31,7 +31,7 @@
 //! | `tip_paths`, `current_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
-//! | `record` | [`Record`]: one row per tick, violations, status and message |
+//! | `record`, `record_message` | [`Record`]: one row per tick, violations and status; its outcome in a sentence |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
 //! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
@@ -54,6 +54,7 @@ mod path_approach;
 mod plant;
 mod progress;
 mod record;
+mod record_message;
 mod repeated_targets;
 mod rule;
 mod safety_filter;

@@ -93,7 +93,7 @@ fn layers_of(tip_path: &TipPath) -> Vec<f64> {
 struct Part {
     first: usize,
     sequence: Vec<Point>,
-    /// Why the arm does not go on from its end.
+    /// Reason why the arm does not go on from its end.
     reason: Option<String>,
 }
 
@@ -176,7 +176,7 @@ impl<'a> Divider<'a> {
         Ok(sequence)
     }
 
-    /// Why the arm does not get from a posture of one layer to another layer.
+    /// Explains why the arm does not get from a posture of one layer to another layer.
     fn reason(&mut self, layer: usize, q: &Point, to: usize, swept: Option<Swept>) -> String {
         let from = (self.fractions[layer], &q[..]);
         let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[to], swept);

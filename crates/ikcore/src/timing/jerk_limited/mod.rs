@@ -66,7 +66,7 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
     let Some(inside) = farther_inside(path, &motion, limits) else { return Ok(motion) };
     match timed(&inside, profile, limits, REFINEMENTS) {
         Err(error @ Error::Interrupted) => Err(error),
-        // Nothing is found farther inside: the first motion stands.
+        // Without a motion farther inside, the first one is kept.
         Err(_) => Ok(motion),
         again => again,
     }
