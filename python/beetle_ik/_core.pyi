@@ -1761,7 +1761,7 @@ class LeastTorque(Goal):
     payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
 
     Args:
-        relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+        relative_to: torque (n,) (N m, N) that the torque of each joint is divided by; inf: the joint does not count. None: the torque limits
             of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
             floating base has no motors, and never counts.
         weight: weight relative to other goals.
@@ -1770,7 +1770,7 @@ class LeastTorque(Goal):
     def __new__(cls, *, relative_to: ArrayLike | None = None, weight: float = 1.0) -> LeastTorque: ...
     @property
     def relative_to(self) -> _Array | None:
-        """What the torque of each joint is compared with (n,) (N m, N); None: its torque limit."""
+        """Torque (n,) (N m, N) that the torque of each joint is divided by; None: its torque limit."""
 
 # --- inverse kinematics -------------------------------------------------------------------------
 
@@ -2007,7 +2007,7 @@ def calibrate(
             - with `plane`: heights of the tip above a plane (m,) (m), zero for contacts;
             - with q (m, 2, n): distances between the tip's positions (m,) (m).
         fit: what may differ from the model: "offsets" (the zero of each joint), "links" (the transform before each joint but the first),
-            "tool", "base". With a camera, "tool" and "base" stand for the poses of camera and board. None: all; with a camera "tool" and
+            "tool", "base". With a camera, "tool" and "base" mean the poses of camera and board. None: all; with a camera "tool" and
             "base", which is hand-eye calibration.
         sigma: standard deviation of the noise (m or pixels): a number, for poses also of angles (rad) or (length, angle), or one row per measurement, (m,)
             or (m, 2). None: estimated from the residuals.
@@ -2046,7 +2046,9 @@ def self_motion(
     The arm must have one joint more than the target constrains: seven joints for a pose, four for a position. With a
     closed form (`Robot.closed_form`), curves are sought at 64 values of its parameter, on every branch; otherwise by
     search. Each curve is followed in short steps past the joint limits and then cut there, so that short parts between
-    two limits are found too.
+    two limits are found too. Curves that cross those found, as at singular poses, are followed as well, and so is the curve
+    through a `start_q` that reaches the target, or through the solution that `solve` finds where there would be none. If
+    no curve can be followed through it, it is returned as a curve of one configuration.
 
     Args:
         robot: the arm.
@@ -2057,7 +2059,7 @@ def self_motion(
         seed: seed of the random draws of a search; the same seed gives the same bits.
 
     Returns:
-        A list of `SelfMotion`; empty if the target is not reached. Every configuration reaches the target to 2e-9 m and rad.
+        A list of `SelfMotion`; empty if no configuration is found. Every configuration reaches the target to 2e-9 m and rad.
 
     Raises:
         InvalidInputError: wrong shape, NaN, or an arm that does not have one joint more than the target constrains.
@@ -2163,7 +2165,7 @@ def map_chunks(
 
 @final
 class Calibration:
-    """The arm as it is built, and what is known of it. Errors of image points are in pixels, others in m."""
+    """The arm as it is built, and the results of the fit. Errors of image points are in pixels, others in m."""
 
     @property
     def robot(self) -> Robot:
@@ -2228,7 +2230,7 @@ class Calibration:
         """
     @property
     def identifiable(self) -> Identifiability:
-        """What the measurements tell about the parameters."""
+        """Identifiability of the parameters."""
     @property
     def base(self) -> _Array:
         """Pose of the robot's base (4, 4) in the frame of the measurements, for `Robot.with_base`."""
@@ -2267,7 +2269,7 @@ class Calibration:
 
 @final
 class Identifiability:
-    """What measurements tell about the parameters of a calibration."""
+    """Identifiability of the parameters of a calibration."""
 
     @property
     def rank(self) -> int:
@@ -2311,7 +2313,9 @@ class SelfMotion:
         """
     @property
     def complete(self) -> bool:
-        """Whether the closed form proves that the call returned every curve: true for arms whose parameter is the arm angle."""
+        """Whether the closed form shows that the call returned every curve: for arms whose parameter is the arm angle, unless curves
+        cross, as at singular poses.
+        """
     @property
     def length(self) -> float:
         """Length of the curve in joint space (rad, m)."""
@@ -2829,7 +2833,7 @@ def track(
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
             several tips all of whose collision shapes are known.
-        keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+        keep: a `Keep`, for example from `upright`, or several: constraints at every instant, between ticks too, and during the stop after
             each. The arm goes as near to the path as that allows. None: nothing.
         seed: seed of the random draws; the same seed gives the same bits.
         limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit
@@ -3109,7 +3113,7 @@ class Tracker:
         """Joints that began outside their position limits, each (joint, value, limit) (rad, m); empty once all are inside."""
     @property
     def keep(self) -> tuple[Keep, ...]:
-        """What holds at every instant, a tuple of `Keep`."""
+        """Constraints at every instant, a tuple of `Keep`."""
     @property
     def obstacles(self) -> tuple[Obstacle | Moving, ...] | None:
         """Obstacles that the arm keeps clear of, a tuple; None: no check. Assign their present positions between ticks. If
@@ -3604,7 +3608,7 @@ def clearance(robot: Robot, q: ArrayLike, obstacles: Iterable[Obstacle] | None =
 
 @final
 class Keep:
-    """What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
+    """Constraint at every instant of a motion: the error of a task to a target stays within the task's tolerance.
 
     Args:
         target: pose (4, 4) or position (3,) (m); or a dict from tips to targets, as for `solve`: the key ("left", "right") is the pose
@@ -3707,7 +3711,7 @@ def plan_point_to_point(
         free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
             bodies come nearer than at the start; see `Plan.freed`.
         task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
-        keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+        keep: constraints at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
             not sampled; `Plan.kept` has the largest errors.
         limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;
@@ -4014,7 +4018,7 @@ def plan_along_path(
         task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
             `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
             whole pose.
-        keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
+        keep: further constraints at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
             path leaves free stays upright.
         limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
         method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,
@@ -4135,7 +4139,7 @@ class Plan:
         """
     @property
     def kept(self) -> list[tuple[Keep, _Array]]:
-        """What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+        """Constraints kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
         the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
         at most a hundredth of the tolerance too large, computed at the first access.
         """
@@ -4169,7 +4173,7 @@ class Plan:
         """The obstacles, as given."""
     @property
     def moves(self) -> list[MoveReport]:
-        """How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans."""
+        """Reports on the moves of a program, a list of `MoveReport` in the order of the moves; empty for other plans."""
     def torques(self, t: ArrayLike) -> _Array:
         """Returns the joint torques (k, n) (N m; N for prismatic joints) of the plan at t (k,) (s), (n,) for a number, as `robot.torques`
         does. Times outside the plan are clamped.
@@ -4331,7 +4335,7 @@ class Wait(Move):
     def __new__(cls, seconds: float, *, name: str | None = None) -> Wait: ...
     @property
     def seconds(self) -> float:
-        """How long (s)."""
+        """Duration (s)."""
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
@@ -4358,7 +4362,7 @@ class Break:
 
 @final
 class MoveReport:
-    """How a move of a program came out."""
+    """Report on a move of a program."""
 
     @property
     def name(self) -> str | None:
@@ -4374,12 +4378,12 @@ class MoveReport:
         """Largest speed of the tip on it (m/s), between its blends; of a turn on the spot 0.1 m for each radian."""
     @property
     def bound_by(self) -> tuple[SpeedBound, ...]:
-        """What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in
+        """Limits that kept the tip more than 0.1 % below the requested speed, between the blends of the move, a tuple of `SpeedBound`, in
         order of time; empty where it had that speed throughout, and where none is asked for.
         """
     @property
     def message(self) -> str:
-        """What the tip does on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests."""
+        """The motion of the tip on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests."""
 
 @final
 class SpeedBound:
@@ -4434,7 +4438,7 @@ def plan_moves(
         obstacles: a `Scene` or a list of obstacles to keep clear of.
         margin: least distance from obstacles and between links (m); None: 1 mm.
         self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
-        keep: what holds at every instant of the motion, a `Keep` or a list of them.
+        keep: constraints at every instant of the motion, a `Keep` or a list of them.
         stop: budgets of the search for each joint move among obstacles; None: as for `plan_point_to_point`.
         seed: seed of the random draws; the same seed gives the same bits.
         progress: True shows a progress bar; a callable is called with (done, total).

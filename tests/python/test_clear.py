@@ -244,3 +244,21 @@ def test_the_command_line_solves_in_a_scene(tmp_path: Path) -> None:
     below = CliRunner().invoke(app, ["solve", "panda", "--position", "0.4,0.1,0.0", *options])
     assert below.exit_code == 1
     assert json.loads(below.stdout)["status"] == "IN_COLLISION"
+
+
+def test_a_straight_wrist_is_turned_clear() -> None:
+    link_poses, rng, tried = UR5.all_link_poses, np.random.default_rng(0), 0
+    for _ in range(40):
+        q = rng.uniform(-3, 3, 6)
+        q[4] = 0.0
+        pose = UR5.fk(q)
+        places = [link_poses(one)[link, :3, 3] for one in bik.solve_all(UR5, pose).q for link in (2, 3, 4)]
+        balls = [bik.obstacles.Sphere(place, 0.06) for place in places]
+        balls = [ball for ball in balls if bik.obstacles.clearance(UR5, q, [ball]) > 0.01]
+        if not balls or bik.obstacles.clearance(UR5, q, balls) < 0.002:
+            continue
+        # q is clear, though every member of the family that the closed form returns may be blocked.
+        tried += 1
+        assert bik.solve(UR5, pose, obstacles=balls).success
+        assert len(bik.solve_all(UR5, pose, obstacles=balls)) > 0
+    assert tried > 20

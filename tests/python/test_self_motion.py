@@ -104,3 +104,30 @@ def test_curves_of_random_arms_have_no_gaps_where_limits_cut_them() -> None:
             assert steps.max(initial=0.0) <= 0.2
             cut += (curve.lower_cut is not None) + (curve.upper_cut is not None)
     assert cut > 20
+
+
+def nearest_to(curves: list[bik.SelfMotion], q: np.ndarray) -> float:
+    """Distance of q from the curves, whole turns aside."""
+    return min(float(np.linalg.norm((curve.q - q + np.pi) % (2 * np.pi) - np.pi, axis=1).min()) for curve in curves)
+
+
+@pytest.mark.parametrize("joint", [1, 3, 5])
+def test_curves_of_singular_poses_are_not_called_complete(joint: int) -> None:
+    iiwa = bik.Robot.named("iiwa14")
+    rng = np.random.default_rng(joint)
+    for _ in range(5):
+        q = rng.uniform(0.9 * iiwa.lower, 0.9 * iiwa.upper)
+        q[joint] = 0.0
+        curves = bik.self_motion(iiwa, iiwa.fk(q))
+        assert curves
+        assert not any(curve.complete for curve in curves)
+        # The start reaches the pose: a curve passes it.
+        assert nearest_to(bik.self_motion(iiwa, iiwa.fk(q), start_q=q), q) <= 0.06
+
+
+def test_a_pose_that_is_solved_has_a_curve() -> None:
+    gen3 = bik.Robot.named("gen3")
+    q = np.array([2.332157592, 0.647266749, -0.871976777, -0.039234226, 4.693339491, -0.693481864, -0.678897468])
+    assert bik.solve(gen3, gen3.fk(q)).success
+    assert bik.self_motion(gen3, gen3.fk(q))
+    assert nearest_to(bik.self_motion(gen3, gen3.fk(q), start_q=q), q) <= 0.06

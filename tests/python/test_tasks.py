@@ -312,3 +312,25 @@ def solve(**options: object) -> bik.Solution:
 )
 def test_mistakes_are_told(call: object, error: type[Exception], message: str) -> None:
     assert_told(call, error, message)
+
+
+@pytest.mark.parametrize("tolerance", [[0.1, 1e-3, 1e-3], [np.inf, 1e-2, 1e-2], [0.1, 0.1, 1e-3]])
+@pytest.mark.parametrize("start", [True, False])
+def test_what_is_within_region_and_tolerance_is_solved(tolerance: list[float], start: bool) -> None:
+    panda = bik.Robot.named("panda")
+    q = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
+    tip = panda.fk(q)
+    region = [[-np.inf] * 3, [tip[0, 3] + 0.01, np.inf, np.inf]]
+    target = tip @ bik.pose([0.0, 0.0, 0.0], rpy=[0.3, 0.2, 0.0])
+    target[:3, 3] += 0.05 * target[:3, 0]
+    assert target[0, 3] > region[1][0]  # outside the box, which the tolerance along x reaches into
+    task = tasks.Pose(tolerance=[*tolerance, np.inf, np.inf, np.inf], region=region)
+    found = bik.solve(panda, target, task=task, start_q=q if start else None)
+    assert found.status == bik.Status.SOLVED, found.message
+    reached = panda.fk(found.q)[:3, 3]
+    assert (np.abs(target[:3, :3].T @ (reached - target[:3, 3])) <= tolerance).all()
+    assert reached[0] < region[1][0]
+    beyond = [[-np.inf] * 3, [tip[0, 3] - 0.1, np.inf, np.inf]]
+    if np.isfinite(tolerance[0]):
+        task = tasks.Pose(tolerance=[*tolerance, np.inf, np.inf, np.inf], region=beyond)
+        assert bik.solve(panda, target, task=task).status == bik.Status.HELD_IN_REGION

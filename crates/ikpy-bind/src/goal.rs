@@ -232,7 +232,7 @@ impl PyClearance {
 /// payload and gravity included. It needs a robot with masses (`Robot.has_dynamics`).
 ///
 /// Args:
-///     relative_to: what the torque of each joint is compared with (n,) (N m, N); inf: the joint does not count. None: the torque limits
+///     relative_to: torque (n,) (N m, N) that the torque of each joint is divided by; inf: the joint does not count. None: the torque limits
 ///         of the robot, `Robot.torque_limit`, so that joints without one do not count; where no joint has one, all count alike. A
 ///         floating base has no motors, and never counts.
 ///     weight: weight relative to other goals.
@@ -248,7 +248,7 @@ impl PyLeastTorque {
         made(Goal::LeastTorque { relative_to, weight }, Self)
     }
 
-    /// What the torque of each joint is compared with (n,) (N m, N); None: its torque limit.
+    /// Torque (n,) (N m, N) that the torque of each joint is divided by; None: its torque limit.
     #[getter]
     fn relative_to<'py>(self_: PyRef<'py, Self>) -> Option<Bound<'py, PyArray1<f64>>> {
         let py = self_.py();

@@ -1,4 +1,4 @@
-//! `Keep` and `upright`: what holds at every instant of a motion.
+//! `Keep` and `upright`: constraints at every instant of a motion.
 
 use std::f64::consts::PI;
 
@@ -24,7 +24,7 @@ use crate::task::{read_task, task_object};
 use crate::tip_keys::{CENTER_OF_MASS, TipKey, in_words, key_object, read_key, subject, tips_in_words};
 use crate::wording::spelt;
 
-/// What holds at every instant of a motion: the error of a task to a target stays within the task's tolerance.
+/// Constraint at every instant of a motion: the error of a task to a target stays within the task's tolerance.
 ///
 /// Args:
 ///     target: pose (4, 4) or position (3,) (m); or a dict from tips to targets, as for `solve`: the key ("left", "right") is the pose
@@ -131,7 +131,7 @@ impl PyKeep {
         NamedTask { subject, task: self.task, tolerance: Tolerance::default() }
     }
 
-    /// What it means for the tips of `robot`.
+    /// Constraints of the core for the tips of `robot`.
     fn of(&self, robot: &Robot) -> PyResult<Vec<Keep>> {
         let one = |(key, target): &(Option<TipKey>, Target)| {
             let subject = match key {
@@ -228,7 +228,7 @@ pub fn upright(
     Ok(PyKeep { targets: vec![(key, target)], task: Some(task) })
 }
 
-/// Reads what is to be kept by `robot`: nothing, a `Keep`, or several.
+/// Reads the constraints of `robot`: none, a `Keep`, or several.
 pub fn read_keeps(robot: &PyRobot, value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Keep>> {
     let Some(value) = value else { return Ok(vec![]) };
     let one = |value: &Bound<'_, PyAny>| match value.cast::<PyKeep>() {

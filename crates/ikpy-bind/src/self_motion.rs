@@ -49,7 +49,8 @@ impl PySelfMotion {
         self.core.upper_cut.map(|joint| self.joint_names[joint].as_str())
     }
 
-    /// Whether the closed form proves that the call returned every curve: true for arms whose parameter is the arm angle.
+    /// Whether the closed form shows that the call returned every curve: for arms whose parameter is the arm angle, unless curves
+    /// cross, as at singular poses.
     #[getter]
     fn complete(&self) -> bool {
         self.core.complete
@@ -99,7 +100,9 @@ impl PySelfMotion {
 /// The arm must have one joint more than the target constrains: seven joints for a pose, four for a position. With a
 /// closed form (`Robot.closed_form`), curves are sought at 64 values of its parameter, on every branch; otherwise by
 /// search. Each curve is followed in short steps past the joint limits and then cut there, so that short parts between
-/// two limits are found too.
+/// two limits are found too. Curves that cross those found, as at singular poses, are followed as well, and so is the curve
+/// through a `start_q` that reaches the target, or through the solution that `solve` finds where there would be none. If
+/// no curve can be followed through it, it is returned as a curve of one configuration.
 ///
 /// Args:
 ///     robot: the arm.
@@ -110,7 +113,7 @@ impl PySelfMotion {
 ///     seed: seed of the random draws of a search; the same seed gives the same bits.
 ///
 /// Returns:
-///     A list of `SelfMotion`; empty if the target is not reached. Every configuration reaches the target to 2e-9 m and rad.
+///     A list of `SelfMotion`; empty if no configuration is found. Every configuration reaches the target to 2e-9 m and rad.
 ///
 /// Raises:
 ///     InvalidInputError: wrong shape, NaN, or an arm that does not have one joint more than the target constrains.

@@ -101,7 +101,7 @@ def _noise(text: str) -> float | list[float]:
 
 
 def _read(file: Path, arm: Robot) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns joint angles and what was measured."""
+    """Returns joint angles and measurements."""
     table = read_table(file, ())
     numbered = [f"q{i + 1}" for i in range(arm.dof)]
     names = numbered if set(numbered) <= set(table) else arm.joint_names

@@ -1,4 +1,4 @@
-"""npz files: the ending of their names, and what is in them."""
+"""npz files: the ending of their names, and their contents."""
 
 import os
 import zipfile

@@ -30,7 +30,7 @@ def to_lerobot(
     Args:
         trajectory: the motion.
         fps: frames per second, a whole number.
-        task: what is done, in words.
+        task: the task, in words.
         degrees: whether the joints, which must all turn, are written in degrees, as for LeRobot's arms; False: rad, m.
         joint_names: names of the joints in the order of q; None: those of the trajectory.
         others: constant values of further entries, such as {"gripper": 50.0}.

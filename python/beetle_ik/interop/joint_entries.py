@@ -13,7 +13,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 class JointEntries:
-    """Where the joints of an arm are in an array; joints that slide are in m.
+    """Places of an arm's joints in an array; joints that slide are in m.
 
     Args:
         robot: the arm.

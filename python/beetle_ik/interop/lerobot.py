@@ -59,7 +59,7 @@ class RobotKinematics:
         self._entries = JointEntries(self.robot, joints, names, argument="joint_names", degrees=True)
         self.joint_names = self._entries.names
         self.result: Solution | Step | None = None
-        """What the last `inverse_kinematics` has reached, with `success`, `status`, `message`, `position_error` (m) and
+        """Result of the last `inverse_kinematics`, with `success`, `status`, `message`, `position_error` (m) and
         `rotation_error` (rad); None before the first call."""
         self._given: tuple[object, object] = (None, None)  # weights, as they were given last
 
@@ -190,7 +190,7 @@ class PoseTracker:
         self._entries = entries
         self._last = start
         self.result: Step | None = None
-        """What the last step has reached, with `success`, `status` and `message`; None before the first."""
+        """Result of the last step, with `success`, `status` and `message`; None before the first."""
 
     def step(
         self,

@@ -23,7 +23,7 @@ class Retargeter:
 
     Args:
         robot: the robot, loaded with a list of tips.
-        start: configuration at t = 0 (n,).
+        start_q: configuration at t = 0 (n,).
         points: tip of the robot for each point of the human, such as {"index": "index_tip"}.
         dt: time step (s).
         weights: cost of the squared distance of each point; those that are not named have 1. They count among points
@@ -63,7 +63,7 @@ class Retargeter:
         self.transform = np.eye(4)
         """Rotation and translation (4, 4) from the human's frame to that of the robot's base, after the scale."""
         self.offsets = {name: np.zeros(3) for name in self.points}
-        """What is added to each point in the frame of the base (3,) (m)."""
+        """Offset of each point in the frame of the base (3,) (m)."""
 
     def fit(
         self,

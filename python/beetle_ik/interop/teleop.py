@@ -21,7 +21,7 @@ class TwistTracker:
 
     Args:
         robot: the arm, with one tip.
-        start: configuration at t = 0 (n,).
+        start_q: configuration at t = 0 (n,).
         dt: time step (s).
         frame: frame of the twists: "base", or "tip" for the axes of the tip. Both turn about the tip.
         timeout: time without a twist after which the arm stops (s); until then it keeps the last one.

@@ -16,7 +16,7 @@ _PARALLEL = 1e-6  # sine of the angle below which two directions are parallel
 
 
 class Style(NamedTuple):
-    """How a line becomes poses: lengths in metres, `crease` in radians."""
+    """Rules by which a line becomes poses: lengths in metres, `crease` in radians."""
 
     standoff: float
     crease: float

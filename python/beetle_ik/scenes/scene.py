@@ -63,7 +63,7 @@ class Scene(Sequence[Obstacle]):
 
     @property
     def attached(self) -> tuple[Attached, ...]:
-        """What the robot carries in the scene, each (link, shape, touch, name) as `robot.with_attached` takes it."""
+        """Shapes that the robot carries, each (link, shape, touch, name) as `robot.with_attached` takes it."""
         return self._attached
 
     @worded_call

@@ -27,7 +27,7 @@ _SAMPLES = 3  # configurations at which they are compared
 
 @dataclass(frozen=True)
 class Followed:
-    """What an arm did that was to follow a motion.
+    """Motion of an arm that was to follow another one.
 
     Attributes:
         t: times (k,) (s).

@@ -75,8 +75,9 @@ struct Pieces<'a> {
     robot: &'a Robot,
     options: &'a PointToPointOptions,
     limits: &'a ConstantLimits,
-    /// What the motion keeps clear of, if anything, and what its pieces do: with the reserve of ends.
+    /// Space that the motion keeps clear of, if any.
     space: Option<&'a ClearSpace<'a>>,
+    /// The same for its pieces: with the reserve of ends.
     narrowed: Option<&'a ClearSpace<'a>>,
     evaluations: usize,
 }
@@ -99,7 +100,7 @@ impl<'a> Pieces<'a> {
         Ok(Some((out, freed)))
     }
 
-    /// What the way out of a contact keeps clear of: contacts that the retreat allows are none.
+    /// Space that the way out of a contact keeps clear of, without contacts that the retreat allows.
     fn around_start(&self) -> Result<Option<ClearSpace<'a>>> {
         match &self.options.retreat {
             Some(line) => self.along_line(line),
@@ -167,7 +168,7 @@ impl<'a> Pieces<'a> {
         Ok(())
     }
 
-    /// What a straight line keeps clear of.
+    /// Space that a straight line keeps clear of.
     fn along_line(&self, line: &StraightLine) -> Result<Option<ClearSpace<'a>>> {
         self.narrowed.map(|space| space.among(line.obstacles(space.obstacles()))).transpose()
     }

@@ -51,7 +51,7 @@ pub(super) struct LineSearch<'a> {
     pub side: Side,
     pub tip: StraightTip<'a>,
     pub position_limits: Limits,
-    /// What the line keeps clear of; `None` if nothing can collide.
+    /// Space that the line keeps clear of; `None` if nothing can collide.
     pub along_line: Option<&'a ClearSpace<'a>>,
     /// Where the line meets the rest of the motion no contact is allowed.
     pub beyond: Option<&'a ClearSpace<'a>>,

@@ -33,7 +33,7 @@ pub(super) fn way_out(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f
     };
     let mut motion: Option<Trajectory> = None;
     let mut at = 0;
-    // Each line as far along the descent as it is certified to come no nearer.
+    // Each line goes as far along the descent as it is certified to come no nearer.
     while at + 1 < descent.len() {
         let Some(next) =
             (at + 1..descent.len()).rev().find(|next| comes_no_nearer(space, &kept, [&descent[at], &descent[*next]]))
@@ -75,7 +75,7 @@ fn descent(space: &ClearSpace<'_>, limits: &ConstantLimits, from: &[f64]) -> Opt
         let largest = gradient.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.abs()));
         let (next, next_cost, next_gradient) = loop {
             if step < SHORTEST {
-                // Near enough: the margin is kept, if not all that lies beyond it.
+                // Near enough: the margin is kept, though not all of the reserve beyond it.
                 return space.holds(&q).then_some(way);
             }
             let mut next = q.clone();

@@ -15,8 +15,7 @@ use crate::timing::{ConstantLimits, scaled, unit_quintic};
 use crate::trajectory::Trajectory;
 use crate::wording::number;
 
-/// Number of intervals of the line between solved configurations: the fewest, and the most if the tip leaves it in
-/// between.
+/// Minimum and maximum number of intervals of the line between solved configurations; more where the tip leaves it in between.
 const INTERVALS: [usize; 2] = [16, 128];
 /// Distance of the tip from the line (m) and angle from its orientation (rad) between them.
 const OFF_LINE: f64 = 1e-4;

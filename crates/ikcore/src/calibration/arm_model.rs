@@ -32,7 +32,7 @@ enum Stage {
     },
 }
 
-/// How much of the poses at both ends can be told from the measurements.
+/// Number of directions of the poses at both ends that measurements determine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FreeEnds {
     /// Directions of the base: 6, or 0 where it has no effect.

@@ -24,7 +24,7 @@ use crate::robot::Robot;
 /// Options of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrationOptions {
-    /// What to fit. With a camera, base and tool stand for the poses of camera and board.
+    /// Parts to fit. With a camera, base and tool mean the poses of camera and board.
     pub fit: Vec<Part>,
     /// Standard deviations of the noise of each measurement: lengths (m or pixels), angles (rad). Estimated from the residuals if not
     /// given.
@@ -41,12 +41,13 @@ impl Default for CalibrationOptions {
     }
 }
 
-/// Noise at the start of an estimate (m, rad), and in pixels.
+/// Initial estimate of the noise (m, rad).
 const FIRST_NOISE: [f64; 2] = [1e-3, 1e-3];
+/// Initial estimate of the noise in pixels.
 const FIRST_PIXELS: f64 = 1.0;
-/// Configurations that show what other measurements would tell, beyond those that the parameters need.
+/// Extra random measurements for the test of identifiability, beyond the number that the parameters need.
 const ELSEWHERE: usize = 10;
-/// Stream of random numbers for them.
+/// Seed of these random measurements.
 const SEED: u64 = 46;
 
 /// Fits the geometry of a robot to measurements at `qs` (m, n) (rad, m), by weighted least squares.

@@ -9,7 +9,7 @@ use crate::message::Message;
 use crate::robot::Robot;
 use crate::wording::number;
 
-/// Motion of a joint (rad or m) below which it counts as none.
+/// Motion of a joint (rad or m) that counts as rest.
 const STILL: f64 = 1e-6;
 /// Angles beyond this are not written in radians (rad): more than two turns.
 const MANY_TURNS: f64 = 13.0;

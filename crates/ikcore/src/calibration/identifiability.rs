@@ -22,7 +22,7 @@ const MOST_ROWS: usize = 8;
 /// Parameters named of one combination.
 const MOST_NAMED: usize = 3;
 
-/// What the measurements tell about the parameters.
+/// Identifiability of the parameters from the measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identifiability {
     /// Number of independent combinations that these configurations determine.

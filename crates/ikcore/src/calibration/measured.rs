@@ -1,4 +1,4 @@
-//! What was measured, one row per configuration.
+//! Measurements, one row per configuration.
 
 use nalgebra::{Unit, Vector3};
 
@@ -87,7 +87,7 @@ impl Measured {
         matches!(self, Self::Poses(_) | Self::BoardPoses { .. })
     }
 
-    /// Whether a camera sees what is measured.
+    /// Whether the measurements are those of a camera.
     pub(super) fn camera(&self) -> Option<CameraPlace> {
         match self {
             Self::BoardPoses { camera, .. } | Self::Pixels { camera, .. } => Some(*camera),

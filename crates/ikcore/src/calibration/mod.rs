@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `measured`, `camera`, `landmark` | what was measured |
+//! | `measured`, `camera`, `landmark` | measurements |
 //! | `parameters`, `estimate` | what may differ from the model, and by how much |
 //! | `arm_model` | the arm as a function of joint angles and parameters, with derivatives |
 //! | `residual` | predicted minus measured |
@@ -10,7 +10,7 @@
 //! | `start`, `placement`, `board_pose` | closed forms for base, tool and camera |
 //! | `normal_equations`, `levenberg_marquardt` | weighted least squares |
 //! | `robust_fit` | noise and outliers |
-//! | `statistics`, `identifiability` | what is known of the result |
+//! | `statistics`, `identifiability` | certainty of the result |
 //! | `suggestion` | further configurations that would tell most |
 //! | `calibrate`, `result` | the call and its result |
 

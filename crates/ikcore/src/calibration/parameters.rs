@@ -61,7 +61,7 @@ pub(super) mod usual {
     pub const PLACEMENT: f64 = 1.0;
 }
 
-/// What a parameter changes.
+/// Quantity that a parameter changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// Zero of this joint.

@@ -40,16 +40,16 @@ pub struct RowErrors {
     pub after: RmsError,
 }
 
-/// Arm as it is built, and what is known of it.
+/// Arm as it is built, and the results of the fit.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     /// The robot with the geometry, base and tool that were found.
     pub robot: Robot,
-    /// What was found.
+    /// Results of the fit.
     pub findings: Findings,
 }
 
-/// Parameters of a calibration, their errors, and what the measurements tell.
+/// Parameters of a calibration, their errors and their identifiability.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Findings {
     /// Pose of the camera, where one sees the measurements: in the frame of the robot's base if it is fixed, else in that of the tip.
@@ -80,7 +80,7 @@ pub struct Findings {
     pub noise: RmsError,
     /// Residuals over the noise that was given; 1 without.
     pub excess: f64,
-    /// What the measurements tell.
+    /// Identifiability of the parameters.
     pub identifiability: Identifiability,
     /// Joints that never moved.
     pub still_joints: Vec<String>,

@@ -21,8 +21,9 @@ const MOST_OUTLIERS: f64 = 0.4;
 const LAST_ROUND: usize = 4;
 /// Relative change of the noise that counts as none.
 const STEADY: f64 = 0.02;
-/// Steps of the descent between two changes of the weights, and after the last.
+/// Maximum number of steps of a descent between two changes of the weights.
 const STEPS: usize = 4;
+/// Maximum number of steps of the descent after the last change.
 const LAST_STEPS: usize = 50;
 
 /// Noise as it was given; without it, it is estimated from the residuals.

@@ -15,7 +15,7 @@ pub(super) struct Alignment {
     pub mirrored_rms: f64,
     /// Spread of the second points over that of the first.
     pub scale: f64,
-    /// How alike the shapes are, whatever their sizes: 1 if one is the other, turned and scaled.
+    /// Similarity of the shapes, whatever their sizes: 1 if one is the other, turned and scaled.
     pub likeness: f64,
     /// Smallest spread of the first points over the largest: 0 in a plane.
     pub flatness: f64,

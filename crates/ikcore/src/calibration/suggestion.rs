@@ -14,8 +14,9 @@ use crate::obstacle::Surroundings;
 use crate::rng::stream;
 use crate::robot::Robot;
 
-/// Configurations to choose from, and draws for each of them.
+/// Number of configurations to choose from.
 const CANDIDATES: usize = 300;
+/// Maximum number of draws for each of them.
 const DRAWS: usize = 30;
 /// Largest number of suggestions.
 const MOST: usize = 100;
@@ -24,10 +25,10 @@ const PASSES: usize = 8;
 /// Gain (of the logarithm of the determinant) that counts as none.
 const NO_GAIN: f64 = 1e-9;
 
-/// Configurations to suggest, and what they keep clear of.
+/// Number of configurations to suggest, and their surroundings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SuggestionOptions {
-    /// How many.
+    /// Number of suggestions.
     pub count: usize,
     /// Obstacles to keep clear of.
     pub surroundings: Surroundings,

@@ -124,7 +124,7 @@ impl Default for Candidates {
     }
 }
 
-/// How well a configuration has a pose, by forward kinematics, and how firmly the pose holds it.
+/// Errors of a configuration at a pose, by forward kinematics, and its stiffness there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct BranchFit {
     /// Position error (m).

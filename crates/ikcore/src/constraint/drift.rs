@@ -1,4 +1,4 @@
-//! How a target sees its subject move with a joint.
+//! Rates of a subject per unit of a joint, as its target sees them.
 
 use crate::math::Frame;
 use crate::math::arithmetic::NoFma;

@@ -19,15 +19,16 @@ use crate::wording::number;
 /// Angle (rad) of a rotation beyond which no bound of its vector is sought on a whole interval.
 const MOST_TURNED: f64 = 4.0;
 
-/// Fraction by which rounding may exceed a tolerance, and the value (m, rad) for which it does where that is zero.
+/// Fraction by which rounding may exceed a tolerance.
 const ROUNDING: f64 = 1e-9;
+/// Value (m, rad) whose rounding is added to every tolerance, for those of zero.
 const LEAST: f64 = 1e-3;
 
 /// An error that stays within its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gauge {
     kind: Kind,
-    /// Entry of the task that it is about.
+    /// Entry of the task that it bounds.
     pub entry: usize,
     /// Largest value (m, rad).
     pub tolerance: f64,
@@ -138,12 +139,12 @@ impl Gauge {
         (0..3).flat_map(both).collect()
     }
 
-    /// Whether the entry of a task is what it measures; a face of a region is not.
+    /// Whether it measures an entry of the task; a face of a region is none.
     pub fn is_of_task(&self) -> bool {
         !matches!(self.kind, Kind::Face { .. })
     }
 
-    /// What it measures, in words.
+    /// Names the measured quantity.
     pub fn named(&self) -> String {
         let axis = |k: usize| ["x", "y", "z"][k];
         match self.kind {
@@ -208,7 +209,7 @@ impl Gauge {
         }
     }
 
-    /// A bound of the value on all configurations between these; infinite if nothing can be said.
+    /// A bound of the value on all configurations between these; infinite if none is known.
     pub fn bound<'s>(&self, points: impl Iterator<Item = &'s Seen> + Clone, bend: &TipBend) -> f64 {
         match self.kind {
             Kind::Distance | Kind::Coordinate(_) | Kind::Face { .. } => {

@@ -5,7 +5,7 @@ use super::largest_factor::TIGHT;
 use super::torque_bend::{BendScratch, HOLD, Rest};
 use crate::math::majorant::Majorant;
 
-/// Most halvings of a line.
+/// Maximum number of halvings of a line.
 const DEEPEST: usize = 10;
 
 /// Checks lines; owns its scratch.
@@ -16,7 +16,7 @@ pub(crate) struct HoldCheck<'a> {
     rests: Vec<Rest>,
 }
 
-/// A line, and its largest distances from zero.
+/// Straight line in joint space.
 struct Line<'a> {
     from: &'a [f64],
     to: &'a [f64],
@@ -64,7 +64,7 @@ impl<'a> HoldCheck<'a> {
         hold
     }
 
-    /// Bounds how far torques get off their parabolas over a part of a line, `half` of it to either side.
+    /// Bounds the distance of torques from their parabolas over a part of a line, `half` of it to either side.
     fn bound(&mut self, Line { from, to }: &Line<'_>, half: f64) {
         let rates = |joint: usize| Majorant::of([half * (to[joint] - from[joint]).abs()]);
         let farthest = |joint: usize| from[joint].abs().max(to[joint].abs());

@@ -1,6 +1,6 @@
 //! Limits of joint torques, and their certificate over a motion.
 //!
-//! Along a path q(s) the torque of a joint is a(s) d2s/dt2 + b(s) (ds/dt)^2 + g(s). Over an interval each factor is within a rest
+//! Along a path q(s) the torque of a joint is a(s) d2s/dt2 + b(s) (ds/dt)^2 + g(s). Over an interval each factor is within a remainder
 //! ([`TorqueBend`]) of the parabola through its values at both ends and in the middle, and a parabola is within its Bernstein coefficients.
 //! Friction is added: viscous friction against the motion, dry friction in both directions, since a joint at rest may start either way.
 
@@ -74,11 +74,11 @@ pub(crate) struct TorqueTerms {
     pub of_change: ByJoint,
     /// Factors of (ds/dt)^2.
     pub of_square: ByJoint,
-    /// What holds the arm.
+    /// Torques that hold the arm.
     pub hold: ByJoint,
 }
 
-/// A number for each joint, of most arms without memory of its own.
+/// One number per joint, on the stack up to eight joints.
 type ByJoint = SmallVec<[f64; 8]>;
 
 /// A torque beyond its limit.
@@ -199,18 +199,18 @@ impl JointTorques {
         self.inverse(at, Derivatives::Both, torques);
     }
 
-    /// Writes what holds the arm at a point.
+    /// Writes the torques that hold the arm at a point.
     pub(super) fn write_hold(&self, at: &mut TorquePoint, hold: &mut [f64]) {
         self.robot.write_frames(&at.q, &mut at.scratch.frames);
         self.dynamics.holding(&mut at.scratch, hold);
     }
 
-    /// Writes what holds the arm at a point, and the gradient (n,) of each of these torques, row by row (n, n).
+    /// Writes the torques that hold the arm at a point, and their gradients (n, n), one row per torque.
     pub fn write_hold_and_gradients(&self, at: &mut TorquePoint, hold: &mut [f64], gradients: &mut [f64]) {
         self.write_hold(at, hold);
         gradients.fill(0.0);
         let TorquePoint { first: rates, scratch, .. } = at;
-        // The matrix is symmetric: what one joint changes is what changes its torque.
+        // The matrix is symmetric: its columns, which are computed, are its rows.
         for (joint, gradient) in gradients.chunks_exact_mut(self.dof()).enumerate() {
             rates.fill(0.0);
             rates[joint] = 1.0;
@@ -234,8 +234,8 @@ impl JointTorques {
         self.dynamics.inverse_without_friction(&DynamicState { q, qd, qdd }, &[], scratch, torques);
     }
 
-    /// Writes the rests of all joints over an interval on which the derivatives of the joints' positions have these majorants and the joints
-    /// are at most this far from zero; those of other factors than these stay as they are.
+    /// Writes the remainders of all joints over an interval on which the derivatives of the joints' positions have these majorants and the
+    /// joints are at most this far from zero; those of other factors stay unchanged.
     pub fn rests<const FACTORS: usize>(
         &self,
         rates: impl Fn(usize) -> Majorant,
@@ -246,7 +246,7 @@ impl JointTorques {
         self.bend.rests::<FACTORS>(rates, farthest, scratch, rests);
     }
 
-    /// The joint that can hold the arm at `q` (n,) the least, if one cannot.
+    /// Returns the joint that is, with dry friction, farthest beyond its limit when holding the arm at `q` (n,), if any.
     pub fn too_heavy(&self, at: &mut TorquePoint, q: &[f64]) -> Option<TooHeavy> {
         at.q.copy_from_slice(q);
         let mut hold = std::mem::take(&mut at.second);
@@ -256,7 +256,7 @@ impl JointTorques {
         found
     }
 
-    /// The torque of those that hold the arm that is, with dry friction, farthest beyond its limit.
+    /// Returns the holding torque that is, with dry friction, farthest beyond its limit.
     pub fn beyond(&self, torques: &[f64]) -> Option<TooHeavy> {
         let found = |(joint, (torque, limit)): (usize, (&f64, &f64))| {
             let friction = self.friction(joint).dry;
@@ -313,10 +313,10 @@ impl JointTorques {
     }
 }
 
-/// What of the torques a motion is judged by.
+/// Quantity that a [`TorqueFactor`] bounds.
 #[derive(Debug, Clone, Copy)]
 enum Judged {
-    /// How much slower it must be.
+    /// Factor by which the motion must be slower.
     Slowdown,
     /// The largest part of the limit of a joint, or of any.
     Share(Option<usize>),

@@ -1,4 +1,4 @@
-//! What holds at every instant of a motion: the error of a task to its target stays within the task's tolerance.
+//! Constraint at every instant of a motion: the error of a task to its target stays within the task's tolerance.
 
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -27,7 +27,7 @@ pub struct Keep {
 /// An error, linearised at a configuration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct KeepRow {
-    /// What is left of its tolerance (rad, m); negative beyond it.
+    /// Remaining tolerance (rad, m); negative beyond it.
     pub left: f64,
     /// Width of the band in which it is kept (rad, m): its tolerance.
     pub room: f64,
@@ -155,7 +155,8 @@ impl Keep {
             .map(|gauge| gauge.in_words(gauge.value(&seen)))
     }
 
-    /// The error at `q` (n,) of whose tolerance the least is left, in words, and what is left: a fraction, of a region the distance (m).
+    /// Returns the remaining tolerance of the error at `q` (n,) nearest to its own, as a fraction, or for a region as a distance (m), and the
+    /// error in words.
     pub(crate) fn tightest_at(&self, robot: &Robot, q: &[f64]) -> Option<(f64, String)> {
         let seen = self.seen(&self.frame(robot, q));
         let left = |gauge: &&Gauge| {
@@ -205,9 +206,9 @@ impl Keep {
         entries
     }
 
-    /// The task and its target, aimed at `wide` of its tolerances by what lies beyond that.
+    /// The task and its target, aimed at the fraction `wide` of its tolerances where the error is larger.
     ///
-    /// What has a narrow tolerance is aimed at the target itself, to within `narrow` of it: of errors that come and go within a narrow
+    /// An entry with a narrow tolerance is aimed at the target itself, to within `narrow` of it: of errors that come and go within a narrow
     /// band, those outside would push the others out again. Narrow and wide entries of one task are two tasks.
     pub(super) fn aimed(&self, [narrow, wide]: [f64; 2]) -> Vec<(CheckedTask, Target)> {
         let part = |is_narrow: bool, keeps_entry: &dyn Fn(f64) -> bool| {
@@ -275,5 +276,5 @@ pub(crate) fn refuse_broken(what: &str, keeps: &[Keep], robot: &Robot, q: &[f64]
     }
 }
 
-/// Tolerance (m, rad) below which the ways that keep it have no room for straight lines.
+/// Tolerance (m, rad) below which straight lines in joint space cannot keep it.
 const NARROW: f64 = 5e-3;

@@ -18,10 +18,10 @@ const MOST_INTERVALS: usize = 150_000;
 /// Fraction of a tolerance by which the largest error found may exceed the true one.
 const SLACK: f64 = 0.01;
 
-/// Tolerance (m, rad) from which on it counts as this.
+/// Largest tolerance (m, rad) in the slack; wider ones count as this.
 const WIDE: f64 = 0.1;
 
-/// An error beyond its tolerance on a motion, or one that cannot be told to be within it.
+/// An error beyond its tolerance on a motion, or one that cannot be certified to be within it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Broken {
     /// The motion's parameter.
@@ -61,7 +61,7 @@ struct Sample {
     seen: Vec<([f64; 3], Seen)>,
 }
 
-/// Values up to which the walker looks no closer: one for each gauge of each constraint.
+/// Stopping rule: bounds up to these values need no closer look, one per gauge of each constraint.
 trait Thresholds {
     /// Takes the values at a sample; false ends the walk.
     fn sampled(&mut self, keep: usize, values: &mut dyn Iterator<Item = f64>) -> bool;
@@ -116,7 +116,7 @@ impl<'a> KeepSweep<'a> {
         let mut largest = Largest { keeps: self.keeps, seen: self.keeps.iter().map(none).collect(), proven: vec![] };
         largest.proven = largest.seen.clone();
         if self.walk(motion, ends, MOST_INTERVALS, &mut largest).is_err() {
-            // What comes after the end of the walk was not examined for any of them.
+            // The motion after the end of the walk was not examined for any of them.
             largest.proven.iter_mut().for_each(|proven| proven.fill(f64::INFINITY));
         }
         let Largest { seen, proven, .. } = largest;
@@ -183,7 +183,7 @@ impl<'a> KeepSweep<'a> {
         let is_open = |(number, keep): &(usize, &Keep)| {
             let (origin, frames) = (&first.seen[*number].0, &first.frames);
             let bend = TipBend::of(robot, keep.subject(), (origin, frames), [change, off_line]);
-            // Places that coincide count once: where an arm that rests begins to move, they would hide that it gets away from one.
+            // Coinciding places count once: where an arm begins to move from rest, a repeated one would hide that it leaves it.
             let another = (last.q != first.q).then_some(last);
             let beside = beside.iter().filter(|sample| sample.q != first.q && sample.q != last.q);
             let points = std::iter::once(first).chain(another).chain(beside).map(|sample| &sample.seen[*number].1);
@@ -213,7 +213,7 @@ impl<'a> KeepSweep<'a> {
     }
 }
 
-/// Writes what the constraints see at a place of the motion into a slot.
+/// Writes a sample of the motion, with all subjects as the constraints see them, into a slot.
 fn write_sample(
     samples: &mut Vec<Sample>,
     slot: usize,

@@ -10,7 +10,7 @@ pub(crate) const TIGHT: f64 = 1e-6;
 /// Intervals examined before bounds are taken as they are.
 const MOST_INTERVALS: usize = 100_000;
 
-/// Most halvings of a segment.
+/// Maximum number of halvings of a segment.
 const DEEPEST: usize = 40;
 
 /// A factor that a motion is judged by.
@@ -24,7 +24,7 @@ pub(super) trait IntervalFactor {
 
 /// Returns the largest factor of `motion`, or a bound of it up to `enough`. A larger one is too large by its accuracy at most.
 pub(super) fn largest_factor(motion: &Trajectory, enough: f64, of: &mut impl IntervalFactor) -> f64 {
-    // A factor far below one may be any; so a part that stays in place needs no short intervals.
+    // A factor far below one need not be exact, so that a part at rest needs no short intervals.
     let mut walk = Walk { of, enough: enough.max(1e-9), only_judges: false, seen: 0.0, proven: 0.0, intervals: 0 };
     let n = motion.joints().len();
     let segments = || motion.coefficients().chunks_exact(n).zip(motion.knots().windows(2));

@@ -24,7 +24,7 @@ pub(crate) struct Onto<'a> {
     linearized: Linearization,
 }
 
-/// Constraints as tasks, whose errors are what lies beyond a part of their tolerances.
+/// Constraints as tasks, whose errors are the excess over a fraction of their tolerances.
 #[derive(Debug, Default)]
 pub(crate) struct KeepTasks {
     tasks: Vec<CheckedTask>,

@@ -1,4 +1,4 @@
-//! Bounds on how a tip gets off the straight line between its places at both ends of a joint motion.
+//! Bounds on the distance of a tip from the straight line between its positions at both ends of a joint motion.
 
 use smallvec::SmallVec;
 

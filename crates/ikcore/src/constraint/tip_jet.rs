@@ -20,7 +20,7 @@ pub(crate) const SQUARE: usize = 2 * ORDER - 1;
 /// Rounding of the coefficients of a square, relative to the sum of their sizes.
 const ROUNDING: f64 = 1e-14;
 
-/// A vector polynomial in x on \[-1, 1\], and a bound of the distance from what it stands for.
+/// A vector polynomial in x on \[-1, 1\], and a bound of its distance from the function that it approximates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VectorJet {
     powers: [Vector; ORDER],
@@ -30,7 +30,7 @@ pub(crate) struct VectorJet {
     pub size: f64,
 }
 
-/// Velocity and turn rate of a tip per unit of x on \[-1, 1\], which stands for an interval of a motion.
+/// Velocity and turn rate of a tip per unit of x on \[-1, 1\], to which an interval of a motion is mapped.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TipJet {
     /// Velocity of the origin (m).
@@ -119,7 +119,7 @@ impl Series {
     const ZERO: Self = Self { vectors: [[0.0; 3]; ORDER], sizes: [0.0; ORDER + 1] };
 
     /// A vector that a body with this angular velocity carries, in the middle of the interval, and a bound of its size over it. `more` is
-    /// how it changes in the body. Returns its derivative too.
+    /// its rate of change in the body. Returns its derivative too.
     fn carried(turn: &Self, middle: Vector, size: f64, more: Option<&Self>) -> [Self; 2] {
         let [mut vector, mut change] = [Self::ZERO; 2];
         (vector.vectors[0], vector.sizes[0]) = (middle, size);

@@ -69,7 +69,7 @@ impl TipRates {
         Ok((!tips.is_empty()).then(|| Self { robot: Arc::new(robot.clone()), tips, limits: limits.clone() }))
     }
 
-    /// These limits without speeds that joints of such velocities and positions (largest sizes, one per joint) can never exceed; `None` if none
+    /// Drops the limits of speeds that tips can never exceed at joint velocities and positions of these sizes, one per joint. `None` if none
     /// is left.
     pub fn without_idle(mut self, [velocity, position]: [&[f64]; 2]) -> Option<Self> {
         let mut at = JointSpan::new(&self.robot);

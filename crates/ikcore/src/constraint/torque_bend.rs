@@ -1,4 +1,4 @@
-//! How far joint torques get off the parabolas through three of their values.
+//! Bounds of the distance of joint torques from the parabolas through three of their values.
 //!
 //! Along a path q(s) the torque of a joint is a(s) d2s/dt2 + b(s) (ds/dt)^2 + g(s). Sizes of masses, levers and turn rates bound the third
 //! Taylor coefficients of a, b and g at every point of an interval, from the base outwards for motions and inwards for forces, as the
@@ -37,15 +37,17 @@ pub(super) struct TorqueBend {
     rotors: Vec<f64>,
 }
 
-/// Largest distances of a joint's torque from parabolas: of what holds the arm, and of the factors of (ds/dt)^2 and d2s/dt2.
+/// Largest distances of a joint's torque from parabolas: of the holding torque, and of the factors of (ds/dt)^2 and d2s/dt2.
 pub(crate) type Rest = [f64; 3];
 
-/// How many of these factors a call needs.
+/// Number of these factors in a call that needs holding torques alone.
 pub(super) const HOLD: usize = 1;
+/// The same with the factor of (ds/dt)^2.
 pub(crate) const HOLD_AND_SQUARE: usize = 2;
+/// The same with the factor of d2s/dt2 too.
 pub(crate) const ALL_FACTORS: usize = 3;
 
-/// What is known of a moving frame and of the load on it.
+/// Bounds on the motion of a frame and on the load on it.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     turn: Majorant,

@@ -23,7 +23,7 @@ use crate::solver::{Monitor, Status};
 const BUDGET_PER_JOINT: usize = 150_000;
 /// Fewest collision-free pairs; below it more are sought ...
 const FEW_PAIRS: usize = 3;
-/// ... from this many random starts.
+/// ... from this number of random starts.
 const TRIES: usize = 400;
 /// Intervals of a straight line at whose ends its penetration is measured.
 const INTERVALS: usize = 16;

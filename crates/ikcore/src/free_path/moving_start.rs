@@ -15,9 +15,9 @@ use crate::solver::Monitor;
 use crate::timing::{ConstantLimits, Violation};
 use crate::trajectory::Trajectory;
 
-/// Ratio of the parts of all accelerations and jerks with which an arm brakes or goes to the end, where limits of tips or torques forbid more, and
-/// the least of these parts.
+/// Ratio of successive fractions of the accelerations and jerks with which an arm brakes or goes to the end, where limits forbid more.
 const MILDER: f64 = 0.85;
+/// Smallest of these fractions.
 const MILDEST: f64 = 0.02;
 
 /// Continuation of a motion with an initial velocity.

@@ -32,7 +32,7 @@ pub(super) struct PairSearch<'a> {
     pub position_limits: Limits,
     end_turns: EndTurns,
     freedom: Freedom<'a>,
-    /// What holds at every instant of the motion, so at its ends too.
+    /// Constraints at every instant of the motion, and so at its ends.
     keeps: &'a [Keep],
 }
 

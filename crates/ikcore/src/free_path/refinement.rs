@@ -13,21 +13,25 @@ use crate::robot::Robot;
 use crate::solver::Monitor;
 use crate::timing::{ConstantLimits, JointPolyline};
 
-/// First, largest and smallest distance by which a corner is moved (rad, m). Below the smallest the search begins again
-/// with the first.
+/// Initial distance by which a corner is moved (rad, m).
 const FIRST: f64 = 0.1;
+/// Largest distance by which a corner is moved (rad, m).
 const FARTHEST: f64 = 0.5;
+/// Smallest distance (rad, m); below it, the search begins again with the initial one.
 const LEAST: f64 = 2e-3;
-/// Factors on that distance on success and on failure; balanced at 1 success in 20.
+/// Factor on that distance on success, balanced with the next at 1 success in 20.
 const LONGER: f64 = 1.5;
+/// Factor on that distance on failure.
 const SHORTER: f64 = 0.98;
 
-/// Probabilities that a change moves a corner, adds one, and leaves one out; the rest are shortcuts.
+/// Probability that a change moves a corner; the rest after the next two is that of a shortcut.
 const MOVES: f64 = 0.7;
+/// Probability that a change adds a corner.
 const ADDS: f64 = 0.15;
+/// Probability that a change leaves out a corner.
 const LEAVES_OUT: f64 = 0.05;
 
-/// Weights of duration and length in a cost of another quantity: they decide between motions that cost almost the same.
+/// Tie-breaking weights of duration and length in the cost.
 const OF_LENGTH: f64 = 0.01; // s/rad, in a duration
 const OF_DURATION: f64 = 0.1; // rad/s, in a joint travel
 const OF_TIP: f64 = 0.02; // m/s, in a tip travel

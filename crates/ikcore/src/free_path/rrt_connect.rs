@@ -33,7 +33,7 @@ pub(super) enum Connection {
 const STRIDE: f64 = 1.0;
 /// Largest length of an edge in a random direction (rad, m).
 const FARTHEST: f64 = 3.0;
-/// Fraction of both within constraints, which long lines leave.
+/// Factor on both lengths under constraints, which long lines would violate.
 const WITHIN: f64 = 0.5;
 /// Fraction of a stride by which one at least brings a tree nearer to its goal.
 const LEAST_GAIN: f64 = 0.1;

@@ -38,8 +38,9 @@ const FAR_FROM_FREE: f64 = 1e3;
 /// Change of the pose, in tolerances, up to which moving a branch inside its limits may still meet the target.
 const FIRMLY_OUTSIDE: f64 = 10.0;
 
-/// Line search along the nearly free direction of a branch: steps to each side, and halvings of a step afterwards.
+/// Number of steps to each side in the line search along the nearly free direction of a branch.
 const TRIED_ALONG: usize = 32;
+/// Number of halvings of the step afterwards.
 const HALVINGS_ALONG: usize = 30;
 
 /// Descents from scattered starts where the closed form may lack solutions.

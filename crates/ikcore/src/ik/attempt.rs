@@ -298,6 +298,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
         if solution.status == Status::Solved
             && let Some((target, criterion)) = self.problem.only_target()
             && let Some(obstruction) = criterion.blocked_by_region(target)
+            && !target.assess(self.context.robot(), &solution.q, &criterion.exact()).score.solved
         {
             (solution.status, solution.obstruction) = (Status::HeldInRegion, obstruction);
         }

@@ -5,8 +5,9 @@ use crate::math::Frame;
 use crate::objective::{Bounds, Point};
 use crate::robot::Robot;
 
-/// Values of the parameter of a redundant arm, and their number in a call.
+/// Number of values of the parameter of a redundant arm.
 const VALUES: usize = 24;
+/// Number of these values per call.
 const VALUES_IN_A_CALL: usize = 2;
 
 /// Hands likely branches of `pose`, to be confirmed by forward kinematics, to `take`: all of them or, for a redundant arm, those

@@ -345,7 +345,7 @@ fn position_box(robot: &Robot, limits: Option<&Limits>) -> Result<Bounds> {
     Ok(open_box(given.lower().iter().copied().zip(given.upper().iter().copied())))
 }
 
-/// Box of these (lower, upper) (rad, m), unbounded where a limit counts as none.
+/// Box of these (lower, upper) (rad, m), unbounded where a limit counts as infinite.
 fn open_box(ranges: impl Iterator<Item = (f64, f64)>) -> Bounds {
     Bounds::from_ranges(ranges.map(|(lower, upper)| sampling_range::opened(lower, upper)))
 }

@@ -106,7 +106,7 @@ impl Preference {
         inside.iter().map(|index| self.inside(configurations, *index)).collect()
     }
 
-    /// Configuration number `place`, clamped to the limits to undo rounding.
+    /// Configuration number `index`, clamped to the limits to undo rounding.
     #[inline]
     fn inside(&self, configurations: &ArmConfigurations, index: usize) -> Point {
         let mut q = Point::new();

@@ -32,7 +32,7 @@ pub struct SolveReport {
     pub error: TipError,
     /// Reason for a miss, in words; empty if unknown or reached.
     pub obstruction: String,
-    /// What was measured of the robot itself, if that keeps the solution in collision.
+    /// Kind of measurement that shows the robot itself, if that keeps the solution in collision.
     pub own_points: Option<Sensed>,
     /// Nearest two bodies, if obstacles or self-collision were checked; `None` while deferred by
     /// [`SolveOptions::nearest_later`](super::SolveOptions).

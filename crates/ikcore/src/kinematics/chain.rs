@@ -19,7 +19,7 @@ pub(crate) struct Transmission {
     pub turn_offset: f64,
     pub slide_scale: f64,
     pub slide_offset: f64,
-    /// How the frame after the stage shows its motion.
+    /// Axis of the motion in the frame after the stage.
     pub axis: StageAxis,
     /// Bound of the second derivative by q of the rotation or translation of a curve, rounded up; zero for others.
     pub bend: f32,

@@ -257,7 +257,7 @@ impl RowSolver {
     }
 }
 
-/// Replaces the lower half of a matrix, by rows of `n`, by its Cholesky factor L. Squares of pivots are at least `least`.
+/// Replaces the lower half of a matrix, by rows of `n`, by its Cholesky factor L. Pivots below `least` are raised to it.
 fn cholesky(matrix: &mut [f64], n: usize, least: f64) {
     for i in 0..n {
         for j in 0..=i {

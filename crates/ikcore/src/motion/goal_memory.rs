@@ -27,8 +27,9 @@ pub(super) const NOISELESS: f64 = 2.0;
 /// Mean surprise that counts as a delay, as a multiple of that of a goal that is followed well.
 const DELAYED: f64 = 2.4;
 
-/// Factors of the memory per sample, with and without a delay.
+/// Factor on the memory per sample, with a delay.
 const SHRINKS: f64 = 0.9;
+/// Factor on the memory per sample, without a delay.
 const GROWS: f64 = 1.03;
 
 /// Smallest fraction of the memory at rest.

@@ -18,6 +18,7 @@
 //! | `goal_memory` | how many samples of a noisy goal to average |
 //! | `goal_fit` | weighted least squares of a line or a parabola through samples at any times |
 //! | `moving_goal` | the goal configuration as a moving point: position, step and change from noisy samples |
+//! | `goal_extrapolation` | where it is between samples, and when these are late |
 //! | `pursuit` | the change of each joint towards a moving goal |
 //! | `arm_state` | [`ArmState`]: positions, velocities and accelerations of all joints |
 //! | `synchronised` | all joints from one state to another in the same time, as short as possible |
@@ -27,11 +28,14 @@ mod admissible;
 mod arm_state;
 mod bracket;
 mod braking;
+mod goal_extrapolation;
 mod goal_fit;
 mod goal_memory;
 mod goal_scales;
 mod joint_state;
 mod moving_goal;
+#[cfg(test)]
+mod moving_goal_tests;
 mod noise_level;
 mod pursuit;
 mod reachable_set;

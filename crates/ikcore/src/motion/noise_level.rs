@@ -6,8 +6,9 @@
 
 use crate::objective::Point;
 
-/// Samples that a parabola and a cubic need.
+/// Number of samples that determine a parabola.
 const PARABOLA: usize = 3;
+/// Number of samples that determine a cubic.
 const CUBIC: usize = 4;
 
 /// Window of the medians. A jump spoils four differences to the parabola, which is less than half.

@@ -1,4 +1,4 @@
-//! What a program keeps clear of, what it keeps on the way, and whether joints can hold the arm there.
+//! Checks of a program: collisions, constraints, and torques that hold the arm.
 
 use crate::constraint::{Keep, refuse_broken};
 use crate::error::Result;
@@ -8,10 +8,10 @@ use crate::robot::Robot;
 use crate::timing::ConstantLimits;
 use crate::trajectory::Trajectory;
 
-/// Advice where a move leads into something.
+/// Advice where a move collides.
 const ADVICE: &str = "move the path or what is in the way, or lower the margin";
 
-/// Obstacles, links, what must hold at every instant, and limits of torques.
+/// Obstacles, links, constraints, and limits of torques.
 #[derive(Clone, Copy)]
 pub(super) struct MoveSurroundings<'a> {
     pub robot: &'a Robot,
@@ -47,7 +47,7 @@ impl MoveSurroundings<'_> {
         self.limits.refuse_too_heavy(what, q)
     }
 
-    /// What is wrong at a configuration, in words.
+    /// Returns the first violation at a configuration, in words.
     pub fn fault_at(&self, q: &[f64]) -> Option<String> {
         if let Some(space) = self.space
             && !space.holds(q)
@@ -63,7 +63,7 @@ impl MoveSurroundings<'_> {
         self.limits.too_heavy(q).map(|heavy| format!("{heavy}; {ADVICE_HOLD}"))
     }
 
-    /// What is wrong on a motion, at any instant, in words.
+    /// Returns the first collision or broken constraint on a motion, at any instant, in words.
     ///
     /// # Errors
     /// None in practice: the joints are those of the robot.
@@ -78,7 +78,7 @@ impl MoveSurroundings<'_> {
     }
 }
 
-/// Advice where a move breaks what is to be kept.
+/// Advice where a move breaks a constraint.
 const ADVICE_KEEP: &str = "move the path, or widen the tolerance";
 
 /// Advice where a move leads to where a joint cannot hold the arm.

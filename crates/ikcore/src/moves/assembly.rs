@@ -19,7 +19,7 @@ use crate::timing::JointPath;
 use crate::trajectory::{Trajectory, polynomial};
 use crate::wording::number;
 
-/// Intervals of each piece of a path in which the place is sought where a joint cannot hold the arm.
+/// Number of intervals of each piece of a path in the search for a place where a joint cannot hold the arm.
 const SAMPLES: usize = 8;
 
 /// Joint difference (rad, m) below which a joint move does not move.
@@ -51,7 +51,7 @@ impl<'a> Assembly<'a> {
     /// Adds all stages: joint moves to the starts of `rungs` but the first, and the joint `paths` of the moves of the tip.
     ///
     /// # Errors
-    /// Those of timings; [`Error::NotFound`] where something is in the way.
+    /// Those of timings; [`Error::NotFound`] where an obstacle or a constraint is in the way.
     pub fn add_all(
         &mut self,
         stages: &'a [Stage],
@@ -255,7 +255,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Adds a motion to the end of a joint move that keeps clear of everything, and keeps what is to be kept.
+    /// Adds a planned motion to the end of a joint move, one that is clear and keeps all constraints.
     fn way_around(&mut self, part: &RunPart<'_>, monitor: &mut dyn Monitor) -> Result<()> {
         let MovesOptions { surroundings, keeps, limits, stop, seed, .. } = self.options;
         let limits = match part.tips {

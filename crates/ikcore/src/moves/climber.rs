@@ -1,4 +1,4 @@
-//! The search for the configurations of a program, and words for what it does not find.
+//! The search for the configurations of a program, and the errors where it fails.
 
 use super::follower::{Lost, Stray};
 use super::ladder::Ladder;
@@ -16,14 +16,13 @@ use crate::task::Target;
 use crate::timing::{ConstantLimits, JointPath};
 use crate::wording::number;
 
-/// Length past the place where a path is lost (m), at which its pose is solved for to learn why; also how exactly the end of the reach is
-/// found.
+/// Length (m) past the loss of a path at which its pose is solved to learn why; also the accuracy of the end of the reach.
 const BEYOND: f64 = 1e-3;
 
-/// What is said of robots with several tips that share joints.
+/// Note in errors of robots whose tips share joints.
 const SHARED: &str = "; joints that move another tip too stay where they are";
 
-/// What the search for configurations is about.
+/// Inputs of the search for configurations.
 pub(super) struct Climber<'a> {
     pub tips: &'a [MovingTip<'a>],
     pub limits: &'a ConstantLimits,
@@ -128,8 +127,8 @@ impl Climber<'_> {
         format!("joint '{name}' would have to go to {value}, beyond its limits [{lower}, {upper}]")
     }
 
-    /// Where a move has no configuration any more: the length along it, and why. `None` if some are found where its path was lost, at `at`,
-    /// and it is not proven that its end has none.
+    /// Returns the length along a move beyond which it has no configuration, and why. `None` if some are found where its path was lost, at
+    /// `at`, and it is not proven that its end has none.
     fn end_of_reach(
         &self,
         block: usize,

@@ -13,8 +13,9 @@ type Controls = [Vector3<f64>; 6];
 /// Length of the first and the last side of the control polygon, as a fraction of the blend radius. Two sides are within the ball.
 const SIDE: f64 = 0.4;
 
-/// Factor by which sides shrink until their points are in the ball, and the smallest fraction.
+/// Factor by which sides shrink until their points are in the ball.
 const SHRINK: f64 = 0.8;
+/// Smallest side, as a fraction of the radius of the ball.
 const SMALLEST_SIDE: f64 = 0.01;
 
 /// Cosine of the turn beyond which a corner counts as a reversal, which no smooth curve passes.

@@ -11,19 +11,22 @@ use crate::math::vector::largest_difference;
 use crate::objective::{Bounds, Linearization, Point};
 use crate::timing::{ConstantLimits, JointPath};
 
-/// Steps of Newton's method, and the squared error at which they end (m^2, rad^2).
+/// Maximum number of Newton steps.
 const STEPS: usize = 20;
+/// Squared error at which Newton steps end (m^2, rad^2).
 const MET: f64 = 1e-22;
 /// Squared error up to which a pose counts as met if no step leads nearer.
 const AS_NEAR_AS_SOLVES: f64 = 1e-14;
 /// Damping relative to squared error, as in the library's Levenberg-Marquardt.
 const DAMPING: f64 = 0.05;
 
-/// Longest step along the path (m), and as a part of a turn by a radian.
+/// Longest step along the path (m).
 const LONGEST_STEP: f64 = 0.05;
+/// Longest step, as a fraction of the length in which the path turns by a radian.
 const PART_OF_TURN: f64 = 0.25;
-/// Largest change of a joint in a step (rad, m), and its largest difference from what is expected: beyond, another branch may be met.
+/// Largest change of a joint in a step (rad, m).
 const LARGEST_CHANGE: f64 = 0.4;
+/// Largest difference of a joint from the predicted value (rad, m): beyond, another branch may be met.
 const LARGEST_SURPRISE: f64 = 0.1;
 /// Halvings after which the path counts as lost.
 const HALVINGS: i32 = 10;
@@ -32,12 +35,13 @@ const HALVINGS: i32 = 10;
 const ACCURACY: [f64; 2] = [2e-6, 2e-5];
 /// The same relative to the length between knots, so that the speed of the tip is that of the parameter.
 const SLOPE_ACCURACY: f64 = 5e-5;
-/// Fractions of an interval at which the tip is looked at.
+/// Fractions of an interval at which the distance of the tip from its path is checked.
 const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Change of the joints (rad, m) between knots that counts as rest: a path in joint space cannot.
 const REST: f64 = 1e-12;
-/// Rounds of refinement, and the most knots.
+/// Maximum number of rounds of refinement.
 const ROUNDS: usize = 16;
+/// Maximum number of knots.
 const MOST_KNOTS: usize = 5000;
 
 /// Joint positions at lengths along a path.
@@ -49,14 +53,14 @@ pub(super) struct Track {
     pub rows: Vec<f64>,
 }
 
-/// Where a path is lost.
+/// Place where a path is lost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lost {
     /// Length up to there (m).
     pub at: f64,
 }
 
-/// Why a track cannot be refined.
+/// Reason why a track cannot be refined.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stray {
     Lost(Lost),
@@ -66,7 +70,7 @@ pub(super) enum Stray {
         joint: usize,
         value: f64,
     },
-    /// At the length `at` (m) the arm need not move on, so free does its task leave the tip.
+    /// At the length `at` (m) the arm need not move on: its task leaves the tip that free.
     Still {
         at: f64,
     },
@@ -97,7 +101,7 @@ impl Track {
     }
 }
 
-/// Where the self-motion of a redundant arm leads.
+/// Direction of the self-motion of a redundant arm: towards a configuration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lead<'a> {
     /// Number of the tip whose arm is led.
@@ -122,7 +126,7 @@ impl<'a> Follower<'a> {
         Self { tip, bounds, linearization: Linearization::default(), evaluations: 0 }
     }
 
-    /// Follows the path from the configuration `q` at its start, at steps that are as long as they may be. Without a `lead`, the joints
+    /// Follows the path from the configuration `q` at its start, in the longest steps allowed. Without a `lead`, the joints
     /// move as little as they can.
     pub fn follow(&mut self, path: &ToolPath, q: &[f64], lead: Option<&Lead<'_>>) -> Result<Track, Lost> {
         let widened = self.bounds_from(q);
@@ -212,7 +216,7 @@ impl<'a> Follower<'a> {
         self.project(&self.tip.task.target(pose), q, &bounds)
     }
 
-    /// What the tip has to meet at the length `s`.
+    /// Target of the tip at the length `s`.
     fn target(&self, path: &ToolPath, s: f64) -> PathTarget {
         self.tip.task.target(&path.pose(s))
     }

@@ -13,12 +13,14 @@ use crate::timing::{ConstantLimits, JointPath};
 /// Length of the first and the last side of the control polygon, as a fraction of the rest of the path up to the corner.
 const SIDE: f64 = 0.4;
 
-/// Samples of the ways into and out of a corner, and halvings to where they cross its ball.
+/// Number of samples of a corner, and of the ways into and out of it.
 const SAMPLES: usize = 64;
+/// Number of halvings towards the crossing of a way and its ball.
 const HALVINGS: usize = 30;
 
-/// Factor by which a ball shrinks until the curve is inside the one asked for, and how often.
+/// Factor by which a ball shrinks until the curve is inside the requested one.
 const SHRINK: f64 = 0.7;
+/// Maximum number of balls tried.
 const SHRINKINGS: usize = 8;
 
 /// A corner, and where it leaves the one path and enters the other.

@@ -24,18 +24,21 @@ use crate::timing::ConstantLimits;
 /// Largest number of rungs of a step of the ladder for each tip; the quickest are kept.
 const MOST_RUNGS: usize = 24;
 
-/// Configurations of a redundant arm that are followed at most, those nearest first, and the number of successes that is enough.
+/// Maximum number of configurations at a pose that are followed, nearest first.
 const MOST_FOLLOWED: usize = 48;
+/// Number of successes that ends the search of a redundant arm.
 const ENOUGH: usize = 6;
 /// The same where the task leaves a part of the pose free: the nearest ones are directions of one branch.
 const ENOUGH_FREE: usize = 24;
 
-/// Configurations that the self-motion is led to, and those at a pose that are led so, where no path is followed without.
+/// Maximum number of configurations at the end of a lost path that the self-motion is led towards.
 const MOST_LED_TO: usize = 12;
+/// Maximum number of configurations at a pose that are followed with a lead, where none succeeds without.
 const MOST_LED: usize = 4;
 
-/// Lengths within which a lead takes effect, as parts of the length up to where a path was lost, and the least of that (m).
+/// Decay lengths of a lead, as fractions of the length at which the path was lost.
 const LEAD_WITHIN: [f64; 3] = [0.3, 0.1, 1.0];
+/// Minimum of that length (m).
 const LEAST_LENGTH: f64 = 0.01;
 
 /// Distance (rad, m) from limits within which the path of a redundant arm stays where it can: splines swing a little between knots.
@@ -347,7 +350,7 @@ impl<'a> Ladder<'a> {
         (below.max(above) > limit_rounding(lower, upper)).then_some(if below > above { lowest } else { highest })
     }
 
-    /// Where on the paths a joint first leaves its limits.
+    /// Returns the place on the paths at which a joint first leaves its limits.
     fn beyond(&self, tracks: &[Track], joint: usize, value: f64) -> Dead {
         let cause = || Cause::Limit { joint, value };
         for (path, track) in tracks.iter().enumerate() {

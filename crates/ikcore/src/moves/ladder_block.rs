@@ -8,11 +8,11 @@ use super::tool_path::ToolPath;
 /// A block of a program.
 #[derive(Debug)]
 pub(super) struct LadderBlock<'a> {
-    /// The joint move at its start; `None` for what comes before the first joint move.
+    /// The joint move at its start; `None` for the block before the first joint move.
     pub goal: Option<(usize, &'a JointGoal)>,
     /// Number of the tip that it leads to a pose.
     pub tip: usize,
-    /// A configuration in which the joints that several tips share are as they are in this block.
+    /// Configuration with the joints that several tips share as in this block.
     pub stem: &'a [f64],
     /// The paths of the tip after it.
     pub paths: Vec<&'a ToolPath>,

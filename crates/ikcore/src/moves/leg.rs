@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::math::so3::rotation_between;
 use crate::math::{Frame, Pose};
 
-/// Length (m) and angle (rad) below which a move counts as none.
+/// Length (m) and angle (rad) below which a move counts as zero.
 const NOTHING: f64 = 1e-9;
 
 /// Length (m) for each radian of a turn on the spot, which has no length of its own.
@@ -41,7 +41,7 @@ pub(super) struct Leg {
     pub rate: Vector3<f64>,
     /// Length (m).
     pub length: f64,
-    /// Speed of the tip (m/s), if one is asked for.
+    /// Requested speed of the tip (m/s), if any.
     pub speed: Option<f64>,
 }
 

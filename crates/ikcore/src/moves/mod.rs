@@ -3,17 +3,17 @@
 //! | file | what |
 //! |---|---|
 //! | `program` | [`Move`]s as data, and their checks |
-//! | `around` | obstacles, and what is kept on the way |
+//! | `around` | collisions and constraints on the way |
 //! | `leg`, `corner`, `tool_path` | lines and arcs by their length, rounded corners, the path from stop to stop |
-//! | `move_task` | what moves must meet of their poses |
-//! | `moving_tip` | tips, what each must meet, and the joints that move it |
-//! | `outline` | a program as steps from rest to rest |
+//! | `move_task` | task of the moves at their poses |
+//! | `moving_tip` | tips, their tasks, and the joints that move them |
+//! | `outline` | a program as stages from rest to rest |
 //! | `follower` | joint positions along a path, by Newton's method and splines |
 //! | `move_configurations` | configurations in which the tip meets a pose |
 //! | `ladder_block`, `rung` | blocks of a program, and configurations at their starts |
 //! | `ladder`, `climber` | configurations for the whole program, and words for where there are none |
 //! | `run`, `joint_corner` | one joint path from stop to stop, corners beside joint moves rounded |
-//! | `timing` | the fastest motion at the speed asked for |
+//! | `timing` | the fastest motion at the requested speed |
 //! | `report` | what slows a move, and when |
 //! | `assembly` | the motion of all steps |
 //! | `program_planner` | the plan for one task |

@@ -11,8 +11,9 @@ use crate::objective::Point;
 use crate::solver::{Monitor, Status};
 use crate::task::Target;
 
-/// Values of the redundancy at which a pose is solved; of each pose, where the task leaves several.
+/// Number of redundancy values at which a pose is solved.
 const REDUNDANCY: usize = 16;
+/// The same for each pose, where the task leaves several.
 const REDUNDANCY_OF_EACH: usize = 4;
 
 /// Configurations of a search, where there is no closed form.
@@ -76,7 +77,7 @@ impl MoveConfigurations<'_, '_> {
         found.iter().map(|own| self.tip.whole(own, reference)).collect()
     }
 
-    /// Configurations near a pose of which the task asks a part.
+    /// Configurations that meet a partial task near a pose.
     fn of_part(
         &self,
         pose: &Pose,

@@ -1,4 +1,4 @@
-//! What the moves of a program must meet of their poses.
+//! Task of the moves of a program at their poses.
 
 use std::f64::consts::TAU;
 
@@ -10,14 +10,15 @@ use crate::math::{Frame, Pose};
 use crate::task::{Components, Target, Task, TaskKind};
 use crate::wording::number;
 
-/// Angle (rad) and distance (m) that a motion may be off its task: smaller tolerances are refused.
+/// Angle (rad) that a motion may be off its task: smaller tolerances are refused.
 pub(super) const TURN_ACCURACY: f64 = 5e-5;
+/// Distance (m) that a motion may be off its task: smaller tolerances are refused.
 const ACCURACY: f64 = 1e-5;
 
-/// Directions about the axis of a pointing task that configurations are looked for at.
+/// Number of directions about the axis of a pointing task at which configurations are sought.
 const SPINS: usize = 16;
 
-/// The part of a pose that counts, and how far the tip may be turned from it. Its position stays on the path, whose length it measures.
+/// Part of a pose that counts, and tolerance of the tip's orientation. Its position stays on the path, whose length it measures.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct MoveTask {
     /// `None`: whole poses.
@@ -54,7 +55,7 @@ impl MoveTask {
         Self { task: self.task, band: self.band.map(|band| band.at_most(0.0)) }
     }
 
-    /// What the tip has to meet at `pose`.
+    /// Target of the tip at `pose`.
     pub fn target(&self, pose: &Frame) -> PathTarget {
         let pose = Target::Pose(*pose);
         // The task has been checked, and a pose has all that any task uses.
@@ -77,7 +78,7 @@ impl MoveTask {
         self.task
     }
 
-    /// Whether an arm of so many joints can move while its tip meets a pose.
+    /// Whether an arm with `dof` joints has self-motion while it meets the task at a pose.
     pub fn leaves_freedom(&self, dof: usize) -> bool {
         let kind = self.task.map_or(TaskKind::Pose, |task| task.kind);
         let of_orientation = match (kind, &self.band) {

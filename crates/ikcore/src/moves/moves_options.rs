@@ -9,14 +9,14 @@ use crate::task::Task;
 /// Options of [`plan_moves`](super::plan_moves()).
 #[derive(Debug, Clone, Default)]
 pub struct MovesOptions {
-    /// What lines, arcs and joint moves to poses must meet of their poses, with a tool if needed. Positions stay on the lines and arcs,
+    /// Task of lines, arcs and joint moves to poses at their poses, with a tool if needed. Positions stay on the lines and arcs,
     /// whatever their tolerance. `None` means whole poses.
     pub task: Option<Task>,
     /// The same for these tips, by number, in place of `task`.
     pub tip_tasks: Vec<(usize, Option<Task>)>,
-    /// What the motion keeps clear of. By default nothing is checked.
+    /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,
-    /// What holds at every instant of the motion.
+    /// Constraints at every instant of the motion.
     pub keeps: Vec<Keep>,
     /// Limits to keep. `None` means the robot's.
     pub limits: Option<Limits>,
@@ -27,7 +27,7 @@ pub struct MovesOptions {
 }
 
 impl MovesOptions {
-    /// What the moves of tip number `tip` must meet.
+    /// Task of the moves of tip number `tip`.
     pub(super) fn task_of(&self, tip: usize) -> Option<&Task> {
         let own = self.tip_tasks.iter().find(|(number, _)| *number == tip);
         own.map_or(self.task.as_ref(), |(_, task)| task.as_ref())

@@ -1,4 +1,4 @@
-//! The tips that moves lead: what each must meet, and the joints that move it.
+//! Tips that moves lead, their tasks, and the joints that move them.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::robot::Robot;
 use crate::task::{CheckedTask, NamedTask, Subject, Task, Tolerance};
 use crate::timing::ConstantLimits;
 
-/// A tip, and what it must meet of its poses.
+/// A tip and its task at poses.
 ///
 /// Its own joints are those that move it and no other tip: all joints for the only tip of a robot. Moves that it leads leave all others where
 /// they are, and with them the other tips.

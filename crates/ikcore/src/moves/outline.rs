@@ -1,4 +1,4 @@
-//! What a program asks of the tip, before configurations are chosen.
+//! Stages of a program, before configurations are chosen.
 
 use nalgebra::Rotation3;
 
@@ -22,7 +22,7 @@ pub(super) enum StageKind {
     Rest(usize, f64),
 }
 
-/// A step, and the radius (m) of the blend into the next one; 0: the arm stops.
+/// A stage, and the radius (m) of the blend into the next one; 0: the arm stops.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
     pub kind: StageKind,

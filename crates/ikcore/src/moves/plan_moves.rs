@@ -16,7 +16,7 @@ use crate::timing::ConstantLimits;
 /// Plans the motion of a program of `moves`, from rest at `start` to rest.
 ///
 /// Configurations are chosen for the program as a whole: no joint meets its limit in the middle of a move. Each move of the tip is as fast
-/// as asked for wherever the limits allow; what does not is in [`Plan::moves`].
+/// as requested wherever the limits allow; [`Plan::moves`] names the limits that slow it.
 ///
 /// With a [task](MovesOptions::task) that leaves a part of the poses free, programs for tasks that ask for more, from whole poses on, are
 /// planned too, and the fastest is taken: freedom never makes a program slower.
@@ -68,7 +68,7 @@ pub fn plan_moves(
     Ok(plan)
 }
 
-/// The same tips with tasks that ask for more: without tolerances where there are some, and for whole poses.
+/// The same tips with stricter tasks: without tolerances where there are some, and for whole poses.
 fn tighter<'a>(tips: &[MovingTip<'a>]) -> impl Iterator<Item = Vec<MovingTip<'a>>> {
     let all = |tighter: fn(&MoveTask) -> MoveTask| tips.iter().map(|tip| tip.with_task(tighter(&tip.task))).collect();
     let has_tolerance = tips.iter().any(|tip| tip.task.has_tolerance());
@@ -100,8 +100,8 @@ fn count(planned: &Result<Plan>) -> usize {
     planned.as_ref().map_or(0, |plan| plan.evaluations)
 }
 
-/// The better of two plans, the second one for a task that asks for more: first what keeps everything, then what is faster. Of two errors
-/// the first one, but for an interruption.
+/// Returns the better of two plans, the second for a stricter task: one that keeps everything, then the faster one. Of two errors the first
+/// one, but for an interruption.
 fn better(planned: Result<Plan>, tighter: Result<Plan>) -> Result<Plan> {
     let (one, other) = match (&planned, &tighter) {
         (_, Err(Error::Interrupted)) | (Err(_), Ok(_)) => return tighter,

@@ -11,7 +11,7 @@ const LONGEST_WAIT: f64 = 1e6;
 /// One move of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Move {
-    /// What the arm does.
+    /// Kind of the move.
     pub kind: MoveKind,
     /// Radius (m) about the end of the move inside which the motion may round the corner to the next move. With zero, or less than the
     /// 1e-5 m that a path is kept to, it stops there.
@@ -50,7 +50,7 @@ pub enum MoveKind {
     Wait(f64),
 }
 
-/// Where a joint move ends.
+/// End of a joint move.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointGoal {
     /// At a configuration (n,) (rad, m).
@@ -83,7 +83,7 @@ impl Move {
         self.is_cartesian() || matches!(self.kind, MoveKind::Joints(JointGoal::Pose(_)))
     }
 
-    /// Speed of the tip that is asked for (m/s).
+    /// Requested speed of the tip (m/s).
     pub(super) fn speed(&self) -> Option<f64> {
         match self.kind {
             MoveKind::Line { speed, .. } | MoveKind::Arc { speed, .. } => speed,

@@ -15,7 +15,7 @@ use crate::obstacle::{Clearance, Surroundings};
 use crate::plan::{Cost, Plan};
 use crate::solver::{Monitor, Status};
 
-/// A checked program, and what each tip must meet.
+/// A checked program, and the task of each tip.
 #[derive(Clone, Copy)]
 pub(super) struct ProgramPlanner<'a> {
     pub around: MoveSurroundings<'a>,
@@ -23,7 +23,7 @@ pub(super) struct ProgramPlanner<'a> {
     pub moves: &'a [Move],
     pub start: &'a [f64],
     pub options: &'a MovesOptions,
-    /// Whether an error is to say why there is no motion, which takes time.
+    /// Whether errors explain why there is no motion, which takes time.
     pub explains: bool,
 }
 
@@ -69,7 +69,7 @@ impl ProgramPlanner<'_> {
         Ok(plan)
     }
 
-    /// Options of searches for configurations of a tip. What several tips keep clear of is for the ladder, which knows all joints.
+    /// Options of searches for configurations of a tip. Collisions of several tips are left to the ladder, which knows all joints.
     fn search(&self, tip: &MovingTip<'_>) -> Result<SolveOptions> {
         let surroundings =
             if self.tips.len() == 1 { self.options.surroundings.clone() } else { Surroundings::default() };

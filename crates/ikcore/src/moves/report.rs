@@ -1,4 +1,4 @@
-//! What slows the tip on a move, and when.
+//! Limits that slow the tip on a move, and when.
 
 use super::moving_tip::MovingTip;
 use super::timing::PathTime;
@@ -10,13 +10,13 @@ use crate::plan::SpeedBound;
 use crate::timing::{ConstantLimits, OneLimit};
 use crate::trajectory::Trajectory;
 
-/// Shortfall of the rate of the path, as a fraction of the speed asked for, that counts as none: that of the tip is then below 1e-3.
+/// Tolerated shortfall of the rate of the path, as a fraction of the requested speed: that of the tip is then below 1e-3.
 const SHORT: f64 = 8e-4;
 
-/// Part of the tightest limit's share at which another one is still named, so that names do not alternate between joints that share a motion.
+/// Fraction of the tightest limit's share above which the limit before is still named, so that names do not alternate between joints.
 const STILL: f64 = 0.95;
 
-/// What stands for the limits of an arm without joints.
+/// Substitute for the tightest limit of an arm without joints.
 const NO_LIMIT: (OneLimit, f64) = (OneLimit::Joint(0, "velocity"), 0.0);
 
 /// Largest speed of the tip on move `index` of a path (m/s), between its corners; `None` where they take all of it.
@@ -28,7 +28,7 @@ pub(super) fn speed_on(path: &ToolPath, index: usize, times: &[PathTime]) -> Opt
     times.iter().filter(is_on_it).map(|at| at.rate).reduce(f64::max)
 }
 
-/// What keeps the tip below the speed asked for on move `index`, between its corners.
+/// Limits that keep the tip below the requested speed on move `index`, between its corners.
 pub(super) fn bounds_on(
     path: &ToolPath,
     index: usize,

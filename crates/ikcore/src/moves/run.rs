@@ -1,4 +1,4 @@
-//! What the arm does from one stop to the next: joint moves and paths of the tip, joined by rounded corners.
+//! Motion from one stop to the next: joint moves and tip paths, joined by rounded corners.
 
 use super::joint_corner::JointCorner;
 use super::move_task::TURN_ACCURACY;
@@ -10,8 +10,9 @@ use crate::math::vector::distance;
 use crate::objective::Point;
 use crate::timing::{ConstantLimits, JointPath};
 
-/// Intervals of a corner at first, and the most.
+/// Initial number of intervals of a corner.
 const INTERVALS: usize = 24;
+/// Maximum number of intervals of a corner.
 const MOST_INTERVALS: usize = 96;
 
 /// Intervals of a straight line in joint space.
@@ -19,9 +20,9 @@ const LINE_INTERVALS: usize = 6;
 
 /// Largest distance of the tip from its path (m) beside a corner.
 const ACCURACY: f64 = 5e-6;
-/// The same relative to the length between knots where a speed is asked for, so that the speed of the tip is that of the parameter; and
-/// the distance (m) that counts as none.
+/// The same relative to the length between knots where a speed is asked for, so that the speed of the tip is that of the parameter.
 const SLOPE_ACCURACY: f64 = 1e-4;
+/// Minimum of that distance (m).
 const NOTHING: f64 = 1e-9;
 
 /// A part of a run.
@@ -37,7 +38,7 @@ pub(super) struct RunPart<'a> {
     pub path: JointPath,
 }
 
-/// Where a part of a run is in it.
+/// Interval of a run that one of its parts covers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     /// Parameter of the run at which it begins.
@@ -118,7 +119,7 @@ impl<'a> Run<'a> {
             let to = corners.get(i).map_or(end, |corner| corner.left);
             let window = Window { begin: at, from, to };
             let mut before = from;
-            // The spline rings beside a corner, by less the finer its knots are there; most runs do without.
+            // Finer knots beside a corner keep the spline from ringing there; most runs need none.
             let beside = |corner: Option<&JointCorner>| {
                 corner
                     .filter(|_| intervals > INTERVALS)

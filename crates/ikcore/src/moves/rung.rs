@@ -25,7 +25,7 @@ impl Rung {
     }
 }
 
-/// Why a block has no rung.
+/// Reason why a block has no rung.
 #[derive(Debug)]
 pub(super) enum Dead {
     /// The goal of the joint move has no configuration: why.
@@ -34,14 +34,14 @@ pub(super) enum Dead {
     Path { path: usize, at: f64, cause: Cause },
 }
 
-/// What ends the following of a path.
+/// Reason why a path is lost.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cause {
     /// No configuration nearby continues it.
     OutOfReach,
     /// A joint would have to go to this value.
     Limit { joint: usize, value: f64 },
-    /// Something is in the way, what is to be kept is broken, or a joint cannot hold the arm: which, with advice.
+    /// A collision, a broken constraint, or a joint that cannot hold the arm, in words and with advice.
     Blocked(String),
 }
 
@@ -70,7 +70,7 @@ pub(super) fn range(q: &[f64], tracks: &[Track], joint: usize) -> [f64; 2] {
     rows.map(|row| row[joint]).fold([q[joint]; 2], |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// Of two reasons, the one that comes later on the way.
+/// Returns the reason that occurs later on the way.
 pub(super) fn farther(known: Option<Dead>, found: Dead) -> Dead {
     let place = |dead: &Dead| match dead {
         Dead::Goal(_) => (0, 0.0),

@@ -5,21 +5,24 @@ use crate::objective::Point;
 use crate::timing::{ConstantLimits, JointPath, TimingOptions, time};
 use crate::trajectory::Trajectory;
 
-/// Tolerances of the speed asked for, relative to it: an excess and a shortfall that count as none.
+/// Tolerated excess over the requested speed, relative to it.
 const FASTER: f64 = 1e-6;
+/// Tolerated shortfall of the requested speed, relative to it.
 const SLOWER: f64 = 3e-4;
 
-/// Part of the speed asked for from which on a shortfall may come from the timing; below, limits keep the speed down.
+/// Fraction of the requested speed above which a shortfall is due to the timing; below it, to limits.
 const NEARLY: f64 = 0.99;
 
-/// Grid points of a timing, and the least number for each piece of the path. Refining the grid would gain a thousandth of the duration.
+/// Minimum number of grid points of a timing. Refining the grid would gain a thousandth of the duration.
 const GRIDPOINTS: usize = 240;
+/// Minimum number of grid points per piece of the path.
 const FOR_EACH_PIECE: usize = 2;
 
-/// Samples in each segment of a trajectory, and with jerk limits, under which the speed may be highest at a quarter of one; and the excess
-/// over the speed asked for, relative to it, that counts as none at the quarters: for so short a time the whole motion is not slowed.
+/// Samples in each segment of a trajectory.
 const SAMPLES: usize = 2;
+/// Samples in each segment with jerk limits, under which the speed may be highest at a quarter of a segment.
 const JERKY_SAMPLES: usize = 4;
+/// Tolerated relative excess over the requested speed at the quarters: the whole motion is not slowed for an instant.
 const FOR_AN_INSTANT: f64 = 1e-3;
 
 /// Newton steps onto the path at each sample.
@@ -37,7 +40,7 @@ pub(super) struct PathTime {
 
 /// The fastest motion along `path` that keeps the largest path speeds of its pieces.
 ///
-/// With jerk limits the whole motion is at last slowed by a little, and with it the speeds; so these are then asked for once more.
+/// With jerk limits the whole motion ends up slightly slowed, and its speeds with it; higher ones are then requested once.
 ///
 /// # Errors
 /// Those of `time_optimal`.
@@ -64,7 +67,7 @@ pub(super) fn timed(path: &JointPath, limits: &ConstantLimits) -> Result<Traject
     Ok(if again.duration() < motion.duration() { again } else { motion })
 }
 
-/// The motion, slowed where it exceeds the speeds asked for; and the largest share of them that it had.
+/// Slows the whole motion if it exceeds the requested speeds. Returns it, and the largest fraction of them that it reached before.
 fn at_most_asked(
     (path, limits): (&JointPath, &ConstantLimits),
     asked: &[f64],

@@ -49,7 +49,7 @@ impl Surroundings {
 }
 
 impl<'a> ClearSpace<'a> {
-    /// The space of a robot around which nothing is.
+    /// The space of a robot in empty surroundings.
     ///
     /// # Errors
     /// Those of [`Scene::empty`].
@@ -70,7 +70,7 @@ impl<'a> ClearSpace<'a> {
         Ok(Self { scene: self.scene.among(obstacles)?, margin: self.margin })
     }
 
-    /// Surroundings that leave this space.
+    /// Surroundings that define this space.
     pub(crate) fn surroundings(&self) -> Surroundings {
         let OtherBodies { obstacles, itself, .. } = &self.scene.others;
         Surroundings { obstacles: Some(obstacles.clone()), margin: Some(self.margin), self_collision: Some(*itself) }
@@ -101,7 +101,7 @@ impl<'a> ClearSpace<'a> {
         &self.scene.others.obstacles
     }
 
-    /// The robot and what is around it.
+    /// The robot and its surroundings.
     pub fn scene(&self) -> &Scene<'a> {
         &self.scene
     }

@@ -18,7 +18,7 @@ const SECTIONS: usize = 12;
 /// The fraction of an interval that a section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Smallest shortfall (m) that makes a row; negative: some that will pass just clear count too.
+/// Smallest shortfall (m) that makes a row; negative, since obstacles that will just pass count too.
 const FAR: f64 = -0.05;
 
 /// Rows of one configuration.
@@ -33,7 +33,7 @@ pub(crate) struct ComingRow {
     pub gradient: [f64; MAX_DOF],
 }
 
-/// Finds what comes too near; owns its scratch.
+/// Finds obstacles that come too near; owns its scratch.
 #[derive(Debug)]
 pub(crate) struct ComingRows {
     rows: Vec<ComingRow>,
@@ -45,7 +45,7 @@ pub(crate) struct ComingRows {
 pub(crate) struct Coming<'a> {
     /// Velocities of the obstacles (m/s); empty if all are at rest.
     pub velocities: &'a [[f64; 3]],
-    /// Time since they were where they are said to be (s).
+    /// Age of the obstacle poses (s).
     pub since: f64,
     /// Horizon of the prediction (s).
     pub horizon: f64,
@@ -67,7 +67,7 @@ impl ComingRows {
         &self.rows
     }
 
-    /// Finds what comes too near to an arm that stays at `q`.
+    /// Finds the obstacles that come too near to an arm at rest at `q`.
     pub fn find(&mut self, scene: &Scene<'_>, q: &[f64], coming: &Coming<'_>) {
         let Self { rows, poses } = self;
         rows.clear();

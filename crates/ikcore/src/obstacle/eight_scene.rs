@@ -42,7 +42,7 @@ impl NearGroups {
 pub(super) struct EightScene<'a> {
     pub scene: &'a Scene<'a>,
     obstacles: Vec<EightShape>,
-    /// The groups that a joint moves, and how far.
+    /// The groups that a joint moves, with bounds on their motion.
     groups: Vec<(usize, TravelBounds)>,
     pairs: Vec<NearGroups>,
     /// The joint values for which the levers hold.

@@ -7,7 +7,7 @@ pub trait JointMotion {
     /// Writes the configuration at `at`.
     fn write(&self, at: f64, q: &mut [f64]);
 
-    /// Writes by how much each joint (rad, m) gets off the straight line between its values at `from` and `to`, which has the same
+    /// Writes the deviation of each joint (rad, m) from the straight line between its values at `from` and `to`, which has the same
     /// parameter: at fraction s of the interval by at most 4 s (1 - s) times this. The entries are zero before. A spline need keep only
     /// to its control points.
     fn write_off_line(&self, from: f64, to: f64, off_line: &mut [f64]);

@@ -13,7 +13,7 @@
 //! | `allowed_contacts` | bodies that may touch an obstacle |
 //! | `clear_groups` | clearance test of one configuration, four bodies at a time |
 //! | `eight_scene`, `travel_bounds` | near pairs at eight configurations |
-//! | `own_points` | advice where the robot is in what was measured |
+//! | `own_points` | advice where measurements contain the robot |
 //! | `without_robot` | clouds and grids without the robot's own points |
 //! | `which_clear` | clear ones of many configurations |
 //! | `sampled_line` | lines in joint space, sampled, for searches |

@@ -2,7 +2,7 @@
 //!
 //! Distances are computed at both ends of an interval of the motion. A pair is clear in between if neither end lets it come near
 //! enough on the way, or if a plane parts both bodies at either end by more than they leave the straight lines between both ends.
-//! Such a plane costs almost no clearance, even along a wall. What is not clear so is examined again in both halves.
+//! Such a plane costs almost no clearance, even along a wall. Pairs that are not clear by this are examined again in both halves.
 //!
 //! The command of a tick is a control point of the spline from tick -1 on, where it draws the curve aside by up to a sixth of what it
 //! changes: around the edge of a box, or past a thin rod, that can be into it although every later instant is clear. So the tick before the
@@ -63,7 +63,7 @@ struct Interval {
     depth: usize,
 }
 
-/// A pair that is too near, or cannot be told to be clear, and when.
+/// A pair that is too near, or cannot be certified as clear, and when.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Blocker {
     pub at: f64,
@@ -142,7 +142,7 @@ impl MotionCertificate {
         whole
     }
 
-    /// Finds how far the joints move in an interval.
+    /// Computes the change of the joints in an interval, and their deviation from its straight line.
     fn measure(&mut self, motion: &impl JointMotion, interval: &Interval) {
         let Self { samples, change, off_line, aside, halfway, .. } = self;
         let [from, to] = interval.ends.map(|end| &samples[end].q);
@@ -183,7 +183,7 @@ impl MotionCertificate {
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from).norm());
             scene.others.obstacles.each_near(&middle, half + reach + most, |obstacle| {
                 let needed = kept.wanted(Some(obstacle), whole.to);
-                // What is not a number is near.
+                // A distance that is not a number counts as near.
                 if !(scene.others.obstacles[obstacle].shape.distance_to_segment(&[from, to], needed + reach)
                     >= needed + reach)
                 {

@@ -43,7 +43,7 @@ impl Scene<'_> {
 
     /// The nearest pair of an obstacle and a body that no joint moves.
     pub(super) fn nearest_fixed(&self) -> Option<(f64, BodyPair)> {
-        // What is found within a reach is the nearest of all if it is no farther than that.
+        // A pair found within a reach is the nearest of all if it is no farther than that.
         let found =
             LOOKED_WITHIN.iter().map(|reach| self.nearest_fixed_within(*reach).filter(|(least, _)| least <= reach));
         found.flatten().next()

@@ -97,7 +97,7 @@ impl Obstacles {
             Some(index) => index.near_ball(center, radius, visit),
             None => {
                 for (obstacle, (middle, own)) in self.0.balls.iter().enumerate() {
-                    // What is not a number is near.
+                    // A distance that is not a number counts as near.
                     if !((middle - center).norm() > radius + own + BALL_ROUNDING) {
                         visit(obstacle);
                     }

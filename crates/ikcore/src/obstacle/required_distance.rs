@@ -10,7 +10,7 @@ pub(crate) struct RequiredDistance<'a> {
     pub margin: f64,
     /// Largest speed of each obstacle (m/s); empty if all are at rest.
     pub speeds: &'a [f64],
-    /// Time since the obstacles were where they are said to be, at tick 0 (s).
+    /// Age of the obstacle poses at tick 0 (s).
     pub since: f64,
     /// Length of a tick (s).
     pub dt: f64,

@@ -9,7 +9,7 @@ use crate::robot::Robot;
 /// A cloud or grid without the robot's own points, from [`Obstacle::without_robot`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct WithoutRobot {
-    /// What is left; the links that may touch it are the same.
+    /// Remaining obstacle; the links that may touch it are the same.
     pub obstacle: Obstacle,
     /// Number of points or voxels that were removed.
     pub removed: usize,

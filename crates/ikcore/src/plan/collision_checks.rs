@@ -64,7 +64,7 @@ pub(crate) fn refuse_collision(what: &str, space: &ClearSpace<'_>, q: &[f64]) ->
 /// Certifies that everything stays `margin` (m) apart on a motion, between samples too.
 ///
 /// # Errors
-/// [`TooNear`]: the first such place.
+/// [`TooNear`]: the first place that is nearer.
 pub(crate) fn certify(sweep: &mut ClearanceSweep<'_>, motion: &Trajectory, margin: f64) -> Result<(), Box<TooNear>> {
     sweep.check(&TimedMotion::new(motion), [0.0, motion.duration()], margin)
 }

@@ -1,4 +1,4 @@
-//! What holds along a finished motion.
+//! Errors of constraints along a finished motion.
 
 use super::collision_checks::{TimedMotion, configuration_at};
 use super::plan::Plan;

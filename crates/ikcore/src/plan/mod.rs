@@ -12,7 +12,7 @@
 //! | `path_break` | where the tool leaves its path |
 //! | `retime` | [`Plan::retime`]: other limits for a finished plan |
 //! | `joined` | a plan, and motions before and after it |
-//! | `kept_along` | what holds along a finished motion |
+//! | `kept_along` | errors of constraints along a finished motion |
 //! | `collision_checks` | margins, collision errors and certifiable motions |
 //! | `planar_arm` | closed-form inverse kinematics of planar arms, with the redundancy as a parameter |
 //! | `search` | runs a solver on the cost of a plan and records its progress |

@@ -1,10 +1,10 @@
-//! How each move of a program came out.
+//! Report on each move of a program: its times, speed, and the limits that slowed it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::wording::number;
 
-/// When a move was made, how fast, and what slowed it.
+/// Times of a move, its speed, and the limits that slowed it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MoveReport {
     /// Its name, if it has one.
@@ -13,17 +13,17 @@ pub struct MoveReport {
     pub start: f64,
     /// When it ends (s).
     pub end: f64,
-    /// What is between its blends.
+    /// Motion between its blends.
     pub course: MoveCourse,
     /// Largest speed of the tip on it (m/s), between its blends. A turn on the spot counts 0.1 m for each radian.
     pub speed: f64,
-    /// What kept the tip below the speed asked for, between its blends, and when; empty where it had that speed, and where none is asked
-    /// for.
+    /// Limits that kept the tip below the requested speed, between its blends, and when; empty where it had that speed, and where none is
+    /// requested.
     pub bound_by: Vec<SpeedBound>,
 }
 
 impl MoveReport {
-    /// What the tip does on it, in words.
+    /// Describes the motion in words.
     pub fn message(&self) -> String {
         match self.course {
             MoveCourse::Rest => "the arm rests".into(),
@@ -33,7 +33,7 @@ impl MoveReport {
     }
 }
 
-/// What is between the blends of a move.
+/// Motion between the blends of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MoveCourse {
     /// A way of the tip or the joints.
@@ -44,7 +44,7 @@ pub enum MoveCourse {
     Rest,
 }
 
-/// A limit that keeps the tip below the speed asked for.
+/// A limit that keeps the tip below the requested speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedBound {
     /// The limit: "velocity", "acceleration" or "jerk" of a joint, "tip speed", "tip acceleration" or "tip turn speed".

@@ -36,9 +36,9 @@ pub struct Plan {
     /// the smallest distance.
     #[serde(with = "stored_clearance")]
     pub clearance: Option<Clearance>,
-    /// Why no clear motion was found, if that is so.
+    /// Reason why no clear motion was found, if none was.
     pub obstruction: Option<String>,
-    /// What was measured of the robot itself, if that is the obstruction.
+    /// Kind of measurement that shows the robot itself, if that is the obstruction.
     pub own_points: Option<Sensed>,
     /// Index of the end that was taken, of those given; `None` for motions along a path.
     pub chosen_end: Option<usize>,
@@ -48,7 +48,7 @@ pub struct Plan {
     pub end_turned: Vec<JointTurned>,
     /// Way out of a contact at the start, if there was one.
     pub freed: Option<Freed>,
-    /// What holds at every instant of the motion. [`kept`](Self::kept) finds the largest errors.
+    /// Constraints at every instant of the motion. [`kept`](Self::kept) finds the largest errors.
     pub keeps: Vec<Keep>,
     /// Surroundings that the whole motion keeps clear of, if any.
     pub surroundings: Option<Surroundings>,
@@ -85,7 +85,7 @@ pub struct Plan {
 pub struct Freed {
     /// The smallest distance at the start (m), below the margin; negative by the depth of an overlap.
     pub clearance: f64,
-    /// The time from which on the margin is kept (s).
+    /// Time after which the margin is kept (s).
     pub until: f64,
 }
 

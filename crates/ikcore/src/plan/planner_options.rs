@@ -123,13 +123,13 @@ pub struct PointToPointOptions {
     pub free_start: bool,
     /// The part of the targets that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
-    /// What holds at every instant of the motion.
+    /// Constraints at every instant of the motion.
     pub keeps: Vec<Keep>,
     /// The planner.
     pub method: PointToPointMethod,
     /// Quantity to minimise.
     pub objective: Cost,
-    /// What the motion keeps clear of. Unless `self_collision` says otherwise, links must not touch each other where the robot has
+    /// Surroundings that the motion keeps clear of. Unless `self_collision` says otherwise, links must not touch each other where the robot has
     /// bodies.
     pub surroundings: Surroundings,
     /// Limits to keep. `None` means the robot's.
@@ -149,7 +149,7 @@ pub struct AlongPathOptions {
     pub objective: Cost,
     /// The part of the poses that matters; the rest is left to the planner. `None` means all of it.
     pub task: Option<Task>,
-    /// What holds at every instant of the motion.
+    /// Constraints at every instant of the motion.
     pub keeps: Vec<Keep>,
     /// Surroundings that the motion keeps clear of. By default nothing is checked.
     pub surroundings: Surroundings,

@@ -78,7 +78,7 @@ impl Plan {
             return Err(Error::Infeasible { problem: problem.into() });
         }
         if is_rounded {
-            // Found when it is asked for.
+            // Computed on demand.
             self.clearance = Some(Clearance::at_least(margin));
         }
         Ok(())

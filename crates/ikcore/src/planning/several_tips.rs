@@ -118,7 +118,7 @@ impl<'a> EndSearch<'a> {
         SolveOptions { tips: tips.iter().copied().chain(also).collect(), ..self.options.clone() }
     }
 
-    /// What is to be kept of tips and pairs without a target among `tips`: it holds at the ends too.
+    /// Constraints of tips and pairs without a target among `tips`: they hold at the ends too.
     fn also_kept(&self, tips: &[NamedTask]) -> impl Iterator<Item = &'a Keep> {
         let named: Vec<Subject> = tips.iter().map(|task| task.subject).collect();
         let is_named = move |subject: Subject| {

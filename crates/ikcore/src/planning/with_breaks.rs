@@ -16,10 +16,10 @@ use crate::solver::{Monitor, Status, Stop, Stopwatch};
 /// Lengths (m) of the straight lines along the axis of the tool by which it leaves the path and comes back, longest first.
 const LINES: [Option<f64>; 4] = [Some(0.05), Some(0.02), Some(0.005), None];
 
-/// Layers that a stretch gives up at its ends where no motion to its very ends keeps everything: at most so many.
+/// Maximum number of layers that a stretch gives up at an end that no motion reaches.
 const GIVEN_UP: usize = 3;
 
-/// Length of a path (m, rad) below which nothing is left out: the tip is not nearer to its path.
+/// Length of path (m, rad) below which a break skips nothing: the tip keeps to its path no better.
 const LEFT_OUT: f64 = 1e-5;
 
 /// Joint difference (rad, m) below which a motion does not move.

@@ -137,7 +137,7 @@ impl Robot {
         };
         masses.links.iter().for_each(&mut add);
         masses.payloads.iter().for_each(&mut add);
-        // What an arm carries says nothing of its own masses.
+        // The masses that an arm carries say nothing of its own.
         let has_mass = |of: &[LinkInertia]| of.iter().any(|link| link.inertia.mass > 0.0);
         if !has_mass(&masses.links) && masses.faults.is_empty() {
             return Err(none(message!["no link has a mass: give ", Setting::Inertias]));

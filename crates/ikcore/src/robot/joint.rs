@@ -55,7 +55,7 @@ pub struct Joint {
     pub armature: f64,
 }
 
-/// How far beyond the limits of a joint (rad, m) its followers by polynomials keep to them: a start a little outside is led inside.
+/// Margin beyond a joint's limits (rad, m) in which its polynomial couplings stay valid: a start slightly outside is led inside.
 const CURVE_SLACK: [f64; 2] = [0.2, 0.02];
 
 /// Rounding beyond a limit, relative to the range of the joint: single precision, and six digits of a file.
@@ -69,7 +69,7 @@ pub(crate) fn limit_rounding(lower: f64, upper: f64) -> f64 {
     (ROUNDING_OF_RANGE * range).max(LEAST_ROUNDING)
 }
 
-/// Distance beyond a limit (rad, m) from which on no one moves a joint to the limit without a thought.
+/// Excess over a limit (rad, m) above which errors no longer suggest clipping.
 const NEAR: [f64; 2] = [50.0 * std::f64::consts::PI / 180.0, 0.05];
 
 /// Advice for a joint of this kind `beyond` its limit (rad, m).

@@ -192,7 +192,7 @@ impl Robot {
         self.turn_periods[joint]
     }
 
-    /// Err unless `q` has one finite entry per joint; `what` names it in the message.
+    /// Checks that `q` has one finite entry per joint; `what` names it in the error.
     pub fn check(&self, what: &str, q: &[f64]) -> Result<()> {
         if q.len() != self.dof() {
             let expected = format!("{} joints{}", self.dof(), self.joints_among(q.len()));

@@ -122,7 +122,7 @@ by_instructions! {
         tree.search::<A>(&SegmentQuery::new(segment), squared_bound(reach), |leaf, bound| {
             let squared = leaf.lanes.nearest::<A>(&start, &along).squared.stored().0;
             for lane in 0..4 {
-                // What is not a number is near.
+                // A distance that is not a number counts as near.
                 if let Some(index) = leaf.piece(lane) && !(squared[lane] > bound) {
                     visit(index, squared[lane]);
                 }

@@ -12,11 +12,12 @@ use crate::objective::{Objective, Point};
 /// the best point with a longer step, which may lead out of a local minimum.
 const FIRST_STEPS: [f64; 3] = [0.05, 0.2, 0.1];
 
-/// The step at which a coordinate no longer counts as moving, as a fraction of its range.
+/// Smallest step of a coordinate, as a fraction of its range.
 const FINEST_STEP: f64 = 2e-3;
 
-/// The factors of a step that led lower, and of one that did not.
+/// Factor on a step that led lower.
 const GROWTH: f64 = 2.0;
+/// Factor on a step that did not.
 const SHRINKAGE: f64 = 0.4;
 
 /// The local search.

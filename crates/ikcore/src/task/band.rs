@@ -9,13 +9,13 @@ use crate::math::box_step::ROWS;
 use crate::objective::TaskBlock;
 
 /// Fraction of a tolerance that the search aims at.
-const AIMED_AT: f64 = 0.999;
+pub(super) const AIMED_AT: f64 = 0.999;
 
 /// Tolerance (m, rad) up to which a search for the exact target is as good.
 const NARROW: f64 = 1e-5;
 
 impl Criterion {
-    /// Criterion whose value is what lies beyond the tolerances.
+    /// Criterion whose value is the excess over the tolerances.
     pub(crate) fn beyond_tolerance(self) -> Self {
         Self { beyond: true, ..self }
     }

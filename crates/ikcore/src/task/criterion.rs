@@ -22,7 +22,7 @@ pub struct Criterion {
     pub region: Option<Region>,
     /// Value of a tip outside its region.
     pub outside: Outside,
-    /// Whether the value is what lies beyond the tolerances, instead of the whole error.
+    /// Whether the value is the excess over the tolerances, instead of the whole error.
     #[serde(skip)]
     pub beyond: bool,
 }
@@ -77,12 +77,15 @@ impl Criterion {
         (0.5 * within).min(WIDEST_MARGIN)
     }
 
-    /// Target of the search: `target` itself, or the nearest position in the region.
+    /// Target of the search: `target` itself, or the nearest position in the region, within the tolerances if there is one.
     pub(crate) fn aim(&self, target: &Target) -> Target {
-        match &self.region {
-            Some(region) => target.with_position(|wanted| region.nearest(wanted, self.margin())),
-            None => *target,
-        }
+        let Some(region) = &self.region else { return *target };
+        self.aim_within(region, target, self.position_within_both(region, target))
+    }
+
+    /// Target of the search in `region`, with what [`position_within_both`](Self::position_within_both) returned.
+    pub(super) fn aim_within(&self, region: &Region, target: &Target, both: Option<[f64; 3]>) -> Target {
+        target.with_position(|wanted| both.unwrap_or_else(|| region.nearest(wanted, self.margin())))
     }
 
     /// Coordinates of the tip that `target` leaves free.

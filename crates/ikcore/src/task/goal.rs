@@ -57,7 +57,7 @@ pub enum Goal {
     },
     /// Torques that hold the arm up, payloads included: the sum of (torque / scale)^2 over the joints.
     LeastTorque {
-        /// What the torque of each joint is compared with (n,) (N m, N); a joint with infinity does not count. `None`: the rated torques;
+        /// Torque (n,) (N m, N) that the torque of each joint is divided by; a joint with infinity does not count. `None`: the rated torques;
         /// where no joint has one, all joints count alike.
         relative_to: Option<Vec<f64>>,
         /// Weight among several goals.

@@ -4,7 +4,8 @@
 //! ([`Tolerance`], [`Components`], [`Region`]). `residual` holds the mathematics of each kind of target; `tip_assessment`,
 //! `region_assessment` and `robot_assessment` apply it to a tip without a region, a tip in a region and a robot at q. A
 //! `named_task` is for a tip or a pair of tips; validated, it is a `checked_task`; `aims` are such tasks with their targets.
-//! `band` reduces errors to what lies beyond the tolerances; `ranked` models a pose in which one part comes [`First`];
+//! `band` reduces errors to the excess over the tolerances; `region_band` is the part of a region within them; `ranked` models
+//! a pose in which one part comes [`First`];
 //! `levels` sorts tasks of several tips. [`Goals`] are costs in the null space of the task.
 
 mod aims;
@@ -21,6 +22,7 @@ mod named_task;
 mod ranked;
 mod region;
 mod region_assessment;
+mod region_band;
 pub(crate) mod residual;
 mod robot_assessment;
 mod subject;

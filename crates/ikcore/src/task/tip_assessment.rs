@@ -26,7 +26,7 @@ impl Target {
         assessment
     }
 
-    /// Value of what lies beyond the tolerances. Apart, because its block would burden the assessment of every other target.
+    /// Value of the excess over the tolerances. Apart, because its block would burden the assessment of every other target.
     #[inline(never)]
     fn excess(&self, tip: &Frame, criterion: &Criterion) -> f64 {
         let mut block = TaskBlock { residual: self.residual(tip), ..TaskBlock::default() };

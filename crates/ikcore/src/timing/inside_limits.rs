@@ -20,7 +20,7 @@ impl JointPath {
         self
     }
 
-    /// How far each control point of a joint has to move: the one that belongs to each break.
+    /// Displacements of the control points of a joint, one per break, that move it inside its limits.
     fn moved_inside(&self, joint: usize, lower: f64, upper: f64) -> Vec<f64> {
         let of_break = |i: usize| {
             let control = self.control_point(i, joint);

@@ -6,15 +6,19 @@
 use crate::math::banded::{self, Band};
 use crate::math::cubic_bspline::{BASIS, CubicBasis};
 
-/// Weight of a sample against bending at which a spline is almost a least-squares fit, and the factor between weights tried.
+/// Weight of a sample against bending at which a spline is almost a least-squares fit.
 const LARGEST_WEIGHT: f64 = 1e10;
+/// Smallest weight of a sample before reweighting.
 const SMALLEST_WEIGHT: f64 = 1e-10;
+/// Factor between the weights tried.
 const WEIGHT_STEP: f64 = 10.0;
 /// Largest part of the tolerance by which a least-squares fit may miss the tube for reweighting to bring it inside.
 const HOPELESS: f64 = 4.0;
-/// Number of times that the weights are adapted, and the range of one change.
+/// Number of times that the weights are adapted.
 const REWEIGHTINGS: usize = 20;
+/// Smallest factor on a weight in one adaptation.
 const SMALLEST_CHANGE: f64 = 0.3;
+/// Largest factor on a weight in one adaptation.
 const LARGEST_CHANGE: f64 = 3.0;
 /// Smallest weight, as a fraction of the largest.
 const SMALLEST_PART: f64 = 1e-10;

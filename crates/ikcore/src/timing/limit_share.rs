@@ -1,4 +1,4 @@
-//! How much of each limit a motion uses at an instant.
+//! Fraction of each limit that a motion uses at an instant.
 
 use super::constant_limits::ConstantLimits;
 use crate::limits::TipField;

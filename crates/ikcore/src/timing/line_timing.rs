@@ -103,7 +103,7 @@ impl JointPolyline {
         Ok(Some(if ahead > 1.0 { along.slowed(ahead)? } else { along }))
     }
 
-    /// A duration (s) that no motion with stops at all points falls short of, whatever limits tips and torques have.
+    /// Lower bound (s) of the duration of any motion with stops at all points.
     fn least_with_stops(&self, limits: &ConstantLimits) -> f64 {
         self.0.windows(2).map(|line| line_profile(line, limits).duration).sum()
     }

@@ -27,6 +27,8 @@
 //! | `time_scaling` | scaling of a whole motion in time, to its limits |
 //! | `limit_share` | how much of each limit a motion uses |
 //! | `constant_limits`, `violation` | [`ConstantLimits`] of each joint, and their [`Violation`]s by a trajectory |
+//! | `required_limits` | limits that a method needs, or cannot keep |
+//! | `whole_arm` | slowing a motion down to the limits of tips and torques, and whether joints can hold the arm |
 
 mod bounding_line;
 mod compose;
@@ -44,6 +46,7 @@ mod quintic;
 mod reachability;
 mod recorded_noise;
 mod refine;
+mod required_limits;
 mod spline;
 mod strips;
 mod time_optimal;
@@ -55,6 +58,7 @@ mod torque_segments;
 mod tube;
 mod velocity_curve;
 mod violation;
+mod whole_arm;
 mod within_tolerance;
 
 pub use crate::math::cubic_spline::SplineEnds;

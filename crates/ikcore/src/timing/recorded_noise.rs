@@ -22,9 +22,9 @@ const ROUNDING: f64 = 1e-9;
 /// Part of the rows that are nearer to the line between their neighbours than the jitter is said to be.
 const MOST: f64 = 0.99;
 
-/// Tolerance that smooths noise, as a multiple of the jitter; and the largest one, as a part of the largest range of a joint: more is
-/// the shape of a motion.
+/// Tolerance that smooths noise, as a multiple of the jitter.
 const TOLERANCE: f64 = 2.0;
+/// Largest such tolerance, as a fraction of the widest range of a joint: more is the shape of a motion.
 const LARGEST: f64 = 0.02;
 
 /// Part of the duration that is left without the noise below which the noise counts as setting it.
@@ -33,12 +33,12 @@ const WITHOUT: f64 = 0.8;
 /// Segments of the timing without jerk limits of the smooth path.
 const SEGMENTS: usize = 300;
 
-/// What the noise of a recording costs.
+/// Cost of the noise of a recording, in duration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedNoise {
     /// Name of the joint that jitters most.
     pub joint: String,
-    /// How far a row of it is off the line between its neighbours (rad, m): at most, but for one row in 100.
+    /// Distance of a row of it from the line between its neighbours (rad, m), which one row in 100 exceeds.
     pub jitter: f64,
     /// Tolerance that smooths the noise of all joints (rad, m).
     pub tolerance: f64,
@@ -100,7 +100,7 @@ pub fn recorded_noise(
     Ok(costs.then_some(RecordedNoise { joint, jitter, tolerance: needed, durations }))
 }
 
-/// How far the rows of a joint are off the lines between their neighbours, but for one in 100, if they lie on alternating sides.
+/// Largest distance of the rows of a joint from the lines between their neighbours, but for one in 100, if they lie on alternating sides.
 fn jitter(path: &JointPath, joint: usize, rounding: f64) -> Option<f64> {
     let rows = path.breaks().len();
     let at = |i: usize| {

@@ -11,7 +11,7 @@ use crate::error::Result;
 /// Fraction of the allowed loss that a new grid aims at, because losses are estimates.
 const AIM: f64 = 0.6;
 
-/// Most halvings of a segment from one grid to the next.
+/// Maximum number of halvings of a segment from one grid to the next.
 const MAX_HALVINGS: u32 = 3;
 
 /// Returns the fastest profile on a grid that starts as that of `profile` and is refined where that saves most time, until it loses less than
@@ -43,7 +43,7 @@ pub(super) fn refine(
     }
 }
 
-/// Returns the segments, each halved so many times.
+/// Returns the segments, each halved as often as `halvings` says.
 fn halved(segments: &[Segment], halvings: &[u32]) -> Vec<Segment> {
     let parts_of = |(segment, times): (&Segment, &u32)| {
         let (segment, parts) = (*segment, 1 << times);

@@ -11,7 +11,7 @@ use super::tip_segments::TipSegments;
 use super::torque_bounds::TorqueBounds;
 use crate::math::arithmetic::by_instructions;
 
-/// How strictly limits are kept over a segment.
+/// Strictness with which limits are kept over a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Strictness {
     /// At every point.

@@ -13,10 +13,10 @@ use crate::math::bernstein::bernstein;
 use crate::math::vector3::{Vector, add_scaled, dot, norm};
 use crate::trajectory::polynomial;
 
-/// Largest error of a polynomial, relative to the size of what it stands for; a segment is halved until then.
+/// Largest error of a polynomial, relative to the size of the function that it approximates; a segment is halved until then.
 const NEGLIGIBLE: f64 = 1e-7;
 
-/// Most halvings of a segment.
+/// Maximum number of halvings of a segment.
 const DEEPEST: usize = 12;
 
 /// Pairs of sides of the polygon inscribed in the circle that the acceleration stays in: it loses 0.5 % at most.

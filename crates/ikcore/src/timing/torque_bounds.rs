@@ -15,7 +15,7 @@ pub(super) type HalfPlane = [f64; 3];
 pub(super) struct TorqueBounds {
     /// From above, then from below.
     lines: Vec<Line>,
-    /// How many are from above.
+    /// Number of those from above.
     above: usize,
     /// The bound on x from half-planes that do not bound u.
     pub largest_x: f64,
@@ -121,7 +121,7 @@ impl KeptTorque {
     }
 }
 
-/// The largest sizes of what holds the arm, of the factor of (ds/dt)^2 and of that of d2s/dt2.
+/// The largest sizes of the holding torque, of the factor of (ds/dt)^2 and of that of d2s/dt2.
 #[inline]
 pub(super) fn largest_terms(nodes: [NodeTerms<'_>; 3], joint: usize) -> [f64; 3] {
     let [start, middle, end] = nodes;

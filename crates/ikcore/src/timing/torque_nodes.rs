@@ -3,7 +3,7 @@
 use super::joint_path::JointPath;
 use crate::constraint::{FourTorquePoints, JointTorques, TooHeavy};
 
-/// A point whose terms are known or asked for: an index.
+/// Index of a point whose terms are known or requested.
 pub(super) type Node = usize;
 
 /// A point of a path: a piece, and the path parameter within it.
@@ -25,7 +25,7 @@ pub(super) struct TorqueNodes<'a> {
 /// Terms of all joints (n,) at a node.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodeTerms<'a> {
-    /// What holds the arm.
+    /// Torques that hold the arm.
     pub hold: &'a [f64],
     /// Factors of (ds/dt)^2.
     pub of_square: &'a [f64],
@@ -57,7 +57,7 @@ impl<'a> TorqueNodes<'a> {
         NodeTerms { hold, of_square, of_change }
     }
 
-    /// Finds the terms of all nodes asked for.
+    /// Computes the terms of all requested nodes.
     ///
     /// # Errors
     /// The first place where a joint cannot hold the arm.

@@ -16,17 +16,18 @@ use crate::interrupt::checkpoint_at;
 use crate::math::majorant::Majorant;
 use crate::wording::number;
 
-/// On a grid that stays as it is, a segment is halved until the rests are at most this part of a limit. On one that is refined they fall with it.
+/// Remainder, as a fraction of a limit, down to which segments of a fixed grid are halved; on a refined grid it shrinks by itself.
 const NEGLIGIBLE: f64 = 3e-4;
 
-/// Most halvings of a segment: for small rests, and where a joint can hardly hold the arm.
+/// Maximum number of halvings of a segment for a small remainder.
 const DEEP: usize = 5;
+/// Maximum number of halvings of a segment where a joint can hardly hold the arm.
 const DEEPEST: usize = 12;
 
-/// Segments that share their rests.
+/// Number of consecutive segments that share their remainders.
 const RUN: usize = 4;
 
-/// Bounds hold for u and x beyond what the segment allows by this factor, so that they serve its parts too.
+/// Factor on the range of u and x in which bounds hold, so that parts of a segment can reuse them.
 const ROOM: f64 = 1.25;
 
 /// Torques over one segment.
@@ -51,17 +52,17 @@ pub(super) struct TorqueSegments<'a> {
     path: &'a JointPath,
     limits: &'a ConstantLimits,
     torques: &'a JointTorques,
-    /// The rests that are not worth halving a segment for, as a part of a limit.
+    /// Remainder, as a fraction of a limit, down to which a segment is halved.
     negligible: f64,
     limited: Vec<LimitedJoint>,
     nodes: TorqueNodes<'a>,
     derivatives: PathDerivatives,
     bend: BendScratch,
-    /// Rests over parts of unit length, by joint; those of all runs of segments so far, one after the other.
+    /// Remainders over parts of unit length, by joint, for all runs of segments so far.
     rests: Vec<Rest>,
     /// Torques over all segments so far.
     known: Vec<SegmentTorques>,
-    /// Those of the last grid, by index; one without bounds may stand for several segments.
+    /// Segments of the last grid, by index; one without bounds may represent several.
     last: Vec<usize>,
 }
 

@@ -9,8 +9,9 @@ use crate::interrupt::{checkpoint, checkpoint_at};
 use crate::math::cubic_bspline::CubicBasis;
 use crate::math::polynomial::largest_magnitude;
 
-/// Smallest number of samples of the path; each piece has at least `SAMPLES_PER_PIECE`.
+/// Minimum number of samples of the path.
 const SAMPLES: usize = 300;
+/// Minimum number of samples per piece of the path.
 const SAMPLES_PER_PIECE: usize = 2;
 
 /// Number of times that the tube is narrowed because the path leaves it between samples.

@@ -18,8 +18,9 @@ use crate::obstacle::{
     ClearSpace, Coming, ComingRows, Edge, JointMotion, MotionCertificate, NearRow, NearRows, RequiredDistance,
 };
 
-/// Clearance beyond the margin at the rest configuration (m), desired and required: leaves room for the certificate.
+/// Desired clearance beyond the margin at the rest configuration (m), as room for the certificate.
 const ROOM: f64 = 2e-4;
+/// Required clearance beyond the margin at the rest configuration (m).
 const LEAST_ROOM: f64 = 2e-5;
 
 /// Smallest and largest distance beyond the margin at which a pair becomes a row (m).
@@ -28,16 +29,18 @@ const NEAR: [f64; 2] = [0.03, 0.2];
 /// Time for evading an approaching obstacle (s).
 const WARNING: f64 = 0.2;
 
-/// Evasion speed (m/s), which determines how early the arm starts to evade, and prediction horizon (s).
+/// Evasion speed (m/s), which determines how early the arm starts to evade.
 const GIVING_WAY: f64 = 0.05;
+/// Prediction horizon (s).
 const FORESEEN: f64 = 3.0;
 
 /// Desired clearance beyond the margin (m) of an arm that has to evade and has limited acceleration: closer to an obstacle, the
 /// certificate of the motion between ticks would refuse to let it start.
 const ROOM_TO_START: f64 = 3e-3;
 
-/// Compliance of rows of moving bodies, and of desired rows: both yield to rows of static bodies.
+/// Compliance of rows of moving bodies, which yield to rows of static bodies.
 const MOVING: f64 = 1e-7;
+/// Compliance of desired rows, which yield to both.
 const WISHED: f64 = 1e-5;
 
 /// Time constant with which a desired distance is restored (s).

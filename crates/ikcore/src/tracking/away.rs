@@ -1,14 +1,14 @@
-//! What keeps an arm away from its target, as a step says it.
+//! Report on an arm that cannot come nearer to its target.
 
 use serde::{Deserialize, Serialize};
 
 use crate::message::{Message, Setting, message};
 use crate::task::TipError;
 
-/// What keeps an arm away from its target: joints at their limits or, without any, a singular configuration.
+/// Obstruction that keeps an arm away from its target: joints at their limits or, without any, a singular configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Away {
-    /// What is known of a way to the target.
+    /// State of the way to the target.
     pub way: Way,
     /// Joints held at their lower and upper limits, one bit each; those that equal limits lock, at both.
     pub held: [u64; 2],
@@ -19,7 +19,7 @@ pub struct Away {
 pub enum Way {
     /// No configuration on the target is known.
     Unknown,
-    /// One is known, and the arm is told to stay.
+    /// One is known, but recovery is switched off.
     Declined,
     /// One is known, but the straight way of the joints to it is not clear or would part tips that are held.
     Blocked,
@@ -55,10 +55,10 @@ impl Away {
         }
     }
 
-    /// What is said where no line of the joints is clear, holds the arm and keeps all that must hold; or where the arm could not follow one.
+    /// Sentence for an arm without a straight line of the joints that is clear, keeps constraints and torques, and can be followed.
     pub(super) const NO_WAY: &str = "the target is in reach, but no straight way of the joints to it was found";
 
-    /// What holds the arm, as the beginning of a sentence.
+    /// Names the joints or the singularity that hold the arm, as the beginning of a sentence.
     fn holder(&self, joint: impl Fn(usize) -> String) -> String {
         let [lower, upper] = self.held;
         let place = |j: usize| match [lower, upper].map(|held| held >> j & 1 == 1) {

@@ -9,8 +9,9 @@ use crate::motion::{Braking, JointState};
 use crate::objective::Point;
 use crate::obstacle::JointMotion;
 
-/// Longest coupled stop, as a multiple of the fastest, plus ticks.
+/// Longest coupled stop, as a multiple of the fastest.
 const SLOWER: f64 = 3.0;
+/// Number of ticks on top of it.
 const MORE_TICKS: usize = 8;
 
 /// Displacement per tick (rad, m) that counts as rest if the next tick can end it.

@@ -1,4 +1,4 @@
-//! Why no target leads an arm, as a step says it.
+//! Reasons why no target leads an arm.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::message::Message;
 use crate::task::TipError;
 use crate::wording::number;
 
-/// Why no target leads the arm in a tick: it comes to rest.
+/// Reason why no target leads the arm in a tick, so that it comes to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Idle {
     /// None has arrived yet.

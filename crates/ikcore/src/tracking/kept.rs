@@ -1,4 +1,4 @@
-//! Constraints on the command of a tracked arm, from what is to be kept at every instant.
+//! Rows on the command of a tracked arm, from constraints that hold at every instant.
 //!
 //! Each error of a constraint limits how far the rest configuration may move towards its tolerance, as a static body does for its
 //! distance in `around_arm`.
@@ -14,9 +14,9 @@ use crate::math::vector::dot;
 use crate::obstacle::{Edge, JointMotion};
 use crate::robot::Robot;
 
-/// What is left of a tolerance at the rest configuration (rad, m), desired and required, and as fractions of the tolerance if that is less:
-/// leaves room for the certificate.
+/// Tolerance left over at the rest configuration, as room for the certificate: in rad or m, and at most this fraction of the tolerance.
 const ROOM: [f64; 2] = [2e-4, 0.1];
+/// The same for what is required instead of desired.
 const LEAST_ROOM: [f64; 2] = [2e-5, 0.01];
 
 /// Intervals examined before a motion counts as one that breaks a constraint.
@@ -68,7 +68,7 @@ impl Kept {
         let first = rows.len();
         self.each_row(rest, |row| {
             let [room, least_room] = [ROOM, LEAST_ROOM].map(|room| within(&row, room));
-            // What is desired is restored gradually, so that it does not compete with what is required.
+            // A desired tolerance is restored gradually, so that it does not compete with required ones.
             let whole = room - row.left;
             let wanted = if whole > 0.0 { (pace * whole).max(least_room - row.left) } else { whole };
             rows.push(response.row(&row.slope.map(|slope| -slope), wanted));
@@ -92,7 +92,7 @@ impl Kept {
     pub fn add_goal_rows(&mut self, q: &[f64], rows: &mut Vec<Row>) -> bool {
         let first = rows.len();
         self.each_row(q, |row| {
-            // A goal keeps slightly more than the arm that pursues it.
+            // A goal keeps slightly more of its tolerance than the arm that pursues it.
             let gradient = row.slope.map(|slope| -slope);
             let least = 2.0 * within(&row, ROOM) - row.left + dot(&gradient[..q.len()], q);
             rows.push(Row { gradient, least, softness: SOFTNESS });

@@ -102,7 +102,7 @@ impl LimitedState {
         for ((step, q), ((last, change), braking)) in
             steps.iter_mut().zip(q).zip(self.state.step.iter().zip(&self.state.change).zip(braking))
         {
-            // The rounding of positions is felt in so small a change: a stop goes on from the step it meant, or else it would end late.
+            // Rounding of positions matters to small changes: a stop goes on from the step that it intended, or it would end late.
             let rounding = f64::EPSILON * q.abs();
             if rounding > COARSE * braking.jerk {
                 let stopping = last + braking.first_change(*last, *change);

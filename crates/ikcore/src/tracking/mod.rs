@@ -26,12 +26,12 @@
 //! | `torque_pace`, `stop_torques` | torque limits: commands and stops that the motors can make, and their certificate |
 //! | `progress` | progress towards its target of an arm held by obstacles |
 //! | `settling` | rest of an arm that comes no nearer to targets that stand still |
-//! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and what a step says of it |
+//! | `way_back`, `away` | the way of an arm that cannot come nearer to a configuration on its target, and the report on it |
 //! | `constrained_step`, `step_context` | steps under constraint rows, and their inputs |
 //! | `tip_paths`, `current_tasks`, `tip_pose` | paths, tasks and measured poses of the tips |
 //! | `target_stream`, `target_filter`, `repeated_targets` | targets as they arrive: stamps, timeout, filters, repetitions |
 //! | `rule` | tick rules: move a modelled arm by one tick inside the box |
-//! | `record` | [`Record`]: one row per tick, violations, status and message |
+//! | `record`, `record_message` | [`Record`]: one row per tick, violations and status; its outcome in a sentence |
 //! | `model_free`, `plant` | tracking without a model: the call, and the arms that it commands |
 //! | `late_sensor` | detects a sensor delay that the controller does not assume |
 //! | `controller` | controllers, which only command and observe |
@@ -54,6 +54,7 @@ mod path_approach;
 mod plant;
 mod progress;
 mod record;
+mod record_message;
 mod repeated_targets;
 mod rule;
 mod safety_filter;

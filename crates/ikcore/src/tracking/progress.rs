@@ -10,17 +10,21 @@ use crate::limits::{Field, Limits};
 use crate::math::vector::distance;
 use crate::objective::Point;
 
-/// Relative and absolute (m) decrease of the error that counts as progress, and the time for it (s).
+/// Relative decrease of the error that counts as progress.
 const NEARER: f64 = 0.02;
+/// Smallest decrease of the error that counts as progress (m).
 const LEAST: f64 = 2e-4;
+/// Time for progress (s).
 const PATIENCE: f64 = 0.3;
 
-/// Relative decrease and time (s) if every command has to bring the rest configuration nearer.
+/// Relative decrease that counts while every command has to bring the rest configuration nearer.
 const MUCH_NEARER: f64 = 0.2;
+/// Time for it (s).
 const LAST_PATIENCE: f64 = 0.5;
 
-/// Time of a turn by 1 rad from rest to rest (s) beyond which an arm gets proportionally more time, and the largest factor.
+/// Time of a turn by 1 rad from rest to rest (s) beyond which an arm gets proportionally more time.
 const QUICK_TURN: f64 = 2.5;
+/// Largest factor on the time that an arm gets.
 const MOST_PATIENT: f64 = 20.0;
 
 /// Relative change of the error by which a target counts as new.

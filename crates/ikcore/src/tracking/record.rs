@@ -10,12 +10,10 @@ use crate::error::Result;
 use crate::kinematics::ReachShortfall;
 use crate::limits::{Field, JointOutside, LimitAt, Limits, ROUNDING, TickBox};
 use crate::math::comparison::larger;
-use crate::message::{Message, Setting, message};
 use crate::obstacle::Sensed;
 use crate::solver::Status;
 use crate::task::{Criterion, TipError};
 use crate::trajectory::Trajectory;
-use crate::wording::{number, time};
 
 /// Tolerance for rounding of positions, in units in the last place of q.
 const ALLOWED_ULPS: f64 = 4.0;
@@ -67,7 +65,7 @@ pub struct Record {
     /// Time taken.
     pub elapsed: Duration,
     /// Approach at the start, if requested.
-    ease: Ease,
+    pub(super) ease: Ease,
     limit_at: LimitAt,
     dt: f64,
     /// Results of each target of several tips; empty for one tip. Stored apart.
@@ -102,7 +100,7 @@ impl TipTable {
 
 /// Approach at the start of a track.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-enum Ease {
+pub(super) enum Ease {
     NotAsked,
     /// No motion within the limits meets the path before it ends.
     Impossible,
@@ -298,7 +296,7 @@ impl Record {
         (0..self.rows()).map(|row| self.time_of(row)).collect()
     }
 
-    fn time_of(&self, row: usize) -> f64 {
+    pub(super) fn time_of(&self, row: usize) -> f64 {
         row as f64 * self.dt
     }
 
@@ -347,153 +345,10 @@ impl Record {
     pub fn evaluations(&self) -> usize {
         self.step_evaluations.iter().sum()
     }
-
-    /// Returns a sentence on the outcome, with advice.
-    pub fn message(&self) -> Message {
-        let advice = match &self.out_of_reach {
-            None if self.ease == Ease::Impossible => {
-                "no motion within the limits meets the path before it ends: slow it down or raise the limits".into()
-            }
-            None if self.was_held_back() => self.held_back(),
-            None if self.count_of(Status::HeldByConstraint) > 0 => self.held_by_constraint(),
-            None if let Some(lock) = self.limits.lock() => message![lock, "; or ", Status::Lost.advice()],
-            None if self.starts_too_fast() => message![
-                "the path moves at its start, where the arm is at rest: ",
-                Setting::Ease,
-                " begins with an approach within the limits",
-            ],
-            None => Status::Lost.advice(),
-            Some((beyond, when)) => {
-                message![format!("the path is {beyond} at t = {} s: ", time(*when)), Status::OutOfReach.advice()]
-            }
-        };
-        message![self.message_with(advice), JointOutside::in_words(&self.start_outside, "begins")]
-    }
-
-    /// Whether obstacles or other links held the arm back.
-    fn was_held_back(&self) -> bool {
-        self.step_status.iter().any(|status| matches!(status, Status::InCollision | Status::HeldByObstacle))
-    }
-
-    /// Describes how obstacles held the arm back, with advice.
-    fn held_back(&self) -> Message {
-        let (status, phrase) = match self.count_of(Status::InCollision) {
-            0 => (Status::HeldByObstacle, "an obstacle or another link held the arm back"),
-            _ => (Status::InCollision, "an obstacle or another link was nearer than the margin"),
-        };
-        let advice = self.own_points.map_or_else(|| status.advice(), Sensed::advice);
-        message![format!("in {} steps {phrase}: ", self.count_of(status)), advice]
-    }
-
-    /// Says in how many steps constraints held the arm back, with advice.
-    fn held_by_constraint(&self) -> Message {
-        let status = Status::HeldByConstraint;
-        let steps = self.count_of(status);
-        message![format!("in {steps} steps what is to be kept held the arm back: "), status.advice()]
-    }
-
-    /// Number of steps with a status.
-    fn count_of(&self, wanted: Status) -> usize {
-        self.step_status.iter().filter(|status| **status == wanted).count()
-    }
-
-    /// Returns [`message`](Self::message) with this `advice` if the track failed.
-    pub(super) fn message_with(&self, advice: impl Into<Message>) -> Message {
-        let last = self.rows() - 1;
-        if self.status == Status::Interrupted {
-            let when = time(self.time_of(last));
-            return message![format!("interrupted at t = {when} s: "), Status::Interrupted.advice()];
-        }
-        if let Some((joint, when)) = self.worst_violation {
-            let (joint, excess) = (self.limits.joint_name(joint), number(self.max_violation));
-            return format!(
-                "joint '{joint}' is {excess} (rad or m) beyond its limits at t = {} s: a limit closes in faster than \
-                 the joint may move; slow it down, raise the velocity or acceleration limit, or start farther inside",
-                time(when)
-            )
-            .into();
-        }
-        let Criterion { tolerance, components, .. } = self.criterion;
-        let band = match components.and_then(|components| components.tolerance) {
-            Some(_) => "its tolerance in each component".into(),
-            None => self.in_words(tolerance.position, tolerance.rotation),
-        };
-        let Some(joined) = self.joined() else {
-            let (position, rotation) = (smallest(&self.position_error), smallest(&self.rotation_error));
-            let nearest = self.in_words(position, rotation);
-            return message![format!("never came within {band} (nearest {nearest}): "), advice];
-        };
-        let since = time(self.time_of(joined));
-        let (position, rotation) = (largest(&self.position_error[joined..]), largest(&self.rotation_error[joined..]));
-        let worst = self.in_words(position, rotation);
-        if self.status == Status::Solved {
-            return format!("in the band of {band} from t = {since} s on; worst error there {worst}").into();
-        }
-        if self.status == Status::HeldInRegion {
-            let held = self.step_status[joined..].iter().filter(|status| **status == Status::HeldInRegion).count();
-            let except = format!(
-                "in the band of {band} from t = {since} s on, except in {held} of {last} steps, in which its region held the tip \
-                 up to {worst} away: "
-            );
-            return message![except, self.status.advice()];
-        }
-        if self.status == Status::LevelGivenUp {
-            let count = self.step_status[joined..].iter().filter(|status| **status == self.status).count();
-            let sentence = format!(
-                "the lowest level met from t = {since} s on; a higher one given up in {count} of {last} steps, by up to {worst}: "
-            );
-            return message![sentence, self.status.advice()];
-        }
-        if matches!(self.status, Status::RotationGivenUp | Status::PositionGivenUp) {
-            let count = self.step_status[joined..].iter().filter(|status| **status == self.status).count();
-            let (met, part, off) = match self.status {
-                Status::RotationGivenUp => {
-                    (self.in_words(position, f64::NAN), "rotation", format!("{} rad", number(rotation)))
-                }
-                _ => (self.in_words(f64::NAN, rotation), "position", format!("{} m", number(position))),
-            };
-            let first = if part == "rotation" { "position" } else { "rotation" };
-            let sentence = format!(
-                "{first} met to {met} from t = {since} s on; {part} given up in {count} of {last} steps, by up to {off}: "
-            );
-            return message![sentence, self.status.advice()];
-        }
-        let outside = self.step_status[joined..].iter().filter(|status| **status != Status::Solved).count();
-        let joined = format!(
-            "joined the path at t = {since} s, then outside the band of {band} in {outside} of {last} steps, by up to {worst}: "
-        );
-        message![joined, advice]
-    }
-
-    /// Whether the arm starts on the path and loses it at once because its acceleration is limited.
-    fn starts_too_fast(&self) -> bool {
-        let limited = [Field::Acceleration, Field::Jerk].into_iter().any(|field| self.limits.is_finite(field));
-        let lost_at_once = self.joined() == Some(0) && self.step_status.get(1) != Some(&Status::Solved);
-        let eases = self.ease == Ease::NotAsked && self.clearance[0].is_nan();
-        limited && lost_at_once && eases
-    }
-
-    /// Formats errors (m, rad) with their units, without components that the task leaves free.
-    fn in_words(&self, position: f64, rotation: f64) -> String {
-        let asked =
-            |errors: &[f64], value: f64| if errors.iter().any(|error| !error.is_nan()) { value } else { f64::NAN };
-        let position = asked(&self.position_error, position);
-        TipError { position, rotation: asked(&self.rotation_error, rotation) }.to_string()
-    }
 }
 
 /// Whether the tick ended in the band, as near to it as the region allows, or with the part or level that comes first met.
 fn is_in_place(status: &Status) -> bool {
     let given_up = [Status::RotationGivenUp, Status::PositionGivenUp, Status::LevelGivenUp];
     matches!(status, Status::Solved | Status::HeldInRegion) || given_up.contains(status)
-}
-
-/// Smallest error; NaN (not part of the task) is ignored.
-fn smallest(errors: &[f64]) -> f64 {
-    errors.iter().copied().fold(f64::INFINITY, f64::min)
-}
-
-/// Largest error; NaN (not part of the task) is ignored.
-fn largest(errors: &[f64]) -> f64 {
-    errors.iter().copied().fold(0.0, f64::max)
 }

@@ -44,14 +44,14 @@ pub(super) struct SafetyFilter {
     stop: CoupledStop,
     /// Stop after the command under consideration.
     next_stop: CoupledStop,
-    /// What keeps the last goal from its target.
+    /// Obstruction that keeps the last goal from its target.
     holds_goal: Option<Holder>,
-    /// What is in the way of the command under consideration.
+    /// Obstructions found for the command under consideration.
     in_the_way: InTheWay,
     progress: ArmProgress,
 }
 
-/// Work of the safety filter, counted: for loops that must know their worst case.
+/// Work counters of the safety filter, for real-time budgets.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FilterWork {
     /// Intervals examined to certify motions.
@@ -65,11 +65,11 @@ pub struct FilterWork {
 pub(super) struct FilterOutcome {
     /// Whether the command was changed.
     pub changed: bool,
-    /// What caused the change, if it was not the pairs of tips.
+    /// Obstruction that caused the change, unless the pairs of tips did.
     pub held_by: Option<Holder>,
 }
 
-/// What holds an arm back.
+/// Kind of obstruction that holds an arm back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Holder {
     /// An obstacle or another link.
@@ -78,7 +78,7 @@ pub(super) enum Holder {
     Constraint,
 }
 
-/// What was found to be in the way of commands.
+/// Obstructions found in the way of commands.
 #[derive(Debug, Clone, Copy, Default)]
 struct InTheWay {
     bodies: bool,
@@ -90,14 +90,14 @@ impl InTheWay {
         self.bodies || self.constraints
     }
 
-    /// What holds the arm: a body, unless only constraints are in the way.
+    /// Returns the obstruction that holds the arm: a body, unless only constraints are in the way.
     fn holder(self) -> Holder {
         if self.constraints && !self.bodies { Holder::Constraint } else { Holder::Body }
     }
 }
 
 impl SafetyFilter {
-    /// Filter of an arm with these limits, in `space` if collisions are to be avoided, that keeps what is `kept`.
+    /// Filter of an arm with these limits, in `space` if collisions are to be avoided, with the constraints `kept`.
     ///
     /// # Errors
     /// [`Error::UnsupportedLimit`](crate::Error::UnsupportedLimit) for limits that vary over time and could push the arm into an
@@ -209,7 +209,7 @@ impl SafetyFilter {
         FilterOutcome { changed: *q != wanted, held_by: is_held.then(|| self.holder()) }
     }
 
-    /// What holds the arm back. One that rests because it came no nearer is held by what keeps its goal from the target.
+    /// Returns the obstruction that holds the arm back. For an arm that rests because it came no nearer, it is that of its goal.
     fn holder(&self) -> Holder {
         if self.in_the_way.any() {
             return self.in_the_way.holder();
@@ -387,7 +387,7 @@ impl SafetyFilter {
         true
     }
 
-    /// Sets the rows of a goal at `q`. Returns what is in its way.
+    /// Sets the rows of a goal at `q`. Returns its obstructions.
     fn set_goal_rows(&mut self, q: &[f64]) -> InTheWay {
         let Self { around, kept, rows, .. } = self;
         rows.rows.clear();
@@ -402,7 +402,7 @@ impl SafetyFilter {
             && self.kept.as_mut().is_none_or(|kept| kept.certifies_line(from, to))
     }
 
-    /// What keeps the last goal from its target.
+    /// Obstruction that keeps the last goal from its target.
     pub fn holds_goal(&self) -> Option<Holder> {
         self.holds_goal
     }

@@ -12,8 +12,9 @@ use crate::task::{Assessment, Target, TargetRow};
 /// Time without progress after which an arm settles (s).
 const PATIENCE: f64 = 1.0;
 
-/// Decrease of an error that counts as progress: relative, and absolute (m, rad); the smaller one counts.
+/// Relative decrease of an error that counts as progress.
 const NEARER: f64 = 0.02;
+/// Decrease of an error that counts as progress, however large the error (m, rad).
 const ENOUGH: f64 = 5e-3;
 
 /// Relative change of the error, and motion of a target relative to the error, after which an arm no longer rests.

@@ -15,7 +15,7 @@ use crate::task::TipError;
 pub struct Step {
     /// Status: [`Status::Solved`] in the band, [`Status::HeldInRegion`] if the region keeps the tip out of the band,
     /// [`Status::InCollision`] if an obstacle or another link is nearer than the margin, [`Status::HeldByObstacle`] if one
-    /// holds the arm back, [`Status::HeldByConstraint`] if what is to be kept does, [`Status::HeldByTorque`] if a torque
+    /// holds the arm back, [`Status::HeldByConstraint`] if a constraint does, [`Status::HeldByTorque`] if a torque
     /// limit does or is exceeded by what the arm carries, [`Status::LevelGivenUp`] if the lowest level of
     /// several targets is met, not all, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
     /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
@@ -30,9 +30,9 @@ pub struct Step {
     pub iterations: usize,
     /// Whether this tick can bring every joint back within its position limits and slow it down to its velocity limit.
     pub inside_limits: bool,
-    /// What keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
+    /// Obstruction that keeps the arm away from its target, if it comes no nearer; `None` for rules other than the library's own.
     pub away: Option<Away>,
-    /// Why no target leads the arm, if none does.
+    /// Reason why no target leads the arm, if none does.
     pub idle: Option<Idle>,
     /// Whether the monitor asked to stop: no configuration was accepted, and time did not advance.
     pub interrupted: bool,
@@ -93,7 +93,7 @@ impl Step {
         message![format!("{how}, {error} away{limits}{known}: "), advice]
     }
 
-    /// Whether the status is about where the arm is, target or not.
+    /// Whether the status concerns the configuration of the arm, whatever its target.
     fn is_obstructed(&self) -> bool {
         matches!(self.status, Status::InCollision | Status::HeldByTorque)
     }

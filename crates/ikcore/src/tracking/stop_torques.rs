@@ -1,8 +1,8 @@
 //! Certificate of the joint torques of a command and of the stop after it, at every tick.
 //!
-//! At a tick the velocity of a joint is its step over the tick, and its acceleration the change of its steps: what the commands say. Between
-//! ticks at which the deceleration of a joint jumps or bends, torques are within a rest of the parabolas through three of their values; ticks
-//! in between are examined only where that does not suffice, down to every one.
+//! At a tick the velocity of a joint is its step over the tick, and its acceleration the change of its steps, both from the commands. Between
+//! ticks at which the deceleration of a joint jumps or bends, torques are within a remainder (`Rest`) of the parabolas through three of their
+//! values; ticks in between are examined only where that does not suffice, down to every one.
 
 use super::command_and_stop::CommandAndStop;
 use super::step_context::StepContext;
@@ -17,16 +17,16 @@ use crate::robot::Robot;
 /// Part of a torque limit that a milder stop would use.
 const MILD: f64 = 0.97;
 
-/// Part of a torque limit beyond which its gradient counts.
+/// Fraction of a torque limit above which the gradient of a torque counts.
 const CLOSE: f64 = 0.8;
 
-/// Part of a torque limit that holds an arm at rest at most: an arm that used all of it could never move away again.
+/// Maximum fraction of a torque limit that holds an arm at rest: with all of it, the arm could never move away again.
 const LEFT_TO_MOVE: f64 = 0.995;
 
-/// Part of the torque that is left to a limit which a command takes.
+/// Fraction of the remaining torque that a command may use where little remains.
 const NEARLY_ALL: f64 = 0.95;
 
-/// Part of a torque limit that an arm may use beyond what holds it, where that is beyond the limit: without it, it could not begin to move.
+/// Fraction of a torque limit allowed on top of a holding torque beyond the limit: without it, the arm could not begin to move.
 const TO_MOVE: f64 = 0.02;
 
 /// Certificate; owns its scratch.
@@ -35,7 +35,7 @@ pub(super) struct StopTorques {
     torques: JointTorques,
     /// Largest torques (N m, N) of a command and the stop after it: the limits, unless the arm cannot be held where it is.
     allowed: Point,
-    /// Part of a limit that what holds the arm after the stop has to stay below, of an arm that leaves where it cannot be held.
+    /// Upper bound of the holding torque after the stop, as a fraction of the limit, while the arm leaves a configuration that it cannot hold.
     leaving: Option<f64>,
     point: TorquePoint,
     bend: BendScratch,
@@ -94,8 +94,8 @@ impl StopTorques {
         Ok(Some(Self { torques, allowed, leaving: None, point, bend, rests, ends, gradients, beyond }))
     }
 
-    /// Allows the torques that an arm needs which cannot be held at `q`, nor where it comes to `rest`: those that hold it at either, and a
-    /// little more to move, until [`allow_limits`](Self::allow_limits). After a command and its stop it has to be easier to hold than at `rest`.
+    /// Allows higher torques to an arm that cannot be held at `q` nor at `rest`: those that hold it at either, and a little more to move,
+    /// until [`allow_limits`](Self::allow_limits). After a command and its stop, the arm has to be easier to hold than at `rest`.
     pub fn allow_holding(&mut self, q: &[f64], rest: &[f64]) {
         for held_at in [q, rest] {
             let held = self.held_at(held_at);
@@ -109,13 +109,13 @@ impl StopTorques {
         }
     }
 
-    /// Allows what the limits do.
+    /// Allows torques up to the limits alone.
     pub fn allow_limits(&mut self) {
         self.allowed.copy_from_slice(self.torques.limits());
         self.leaving = None;
     }
 
-    /// The joint that can hold the arm at rest at `q` the least, if one cannot.
+    /// Returns the joint farthest beyond its limit when holding the arm at `q`, if any.
     pub fn too_heavy(&mut self, q: &[f64]) -> Option<Overload> {
         let held = self.held_at(q);
         self.overload(&held, 0, 1.0 + TIGHT)
@@ -214,13 +214,13 @@ impl StopTorques {
         }
     }
 
-    /// Whether what holds the arm at rest after the command `q` and its stop leaves hardly any torque to move it.
+    /// Whether holding the arm after the command `q` and its stop takes nearly all of a torque limit.
     pub fn strains_after(&mut self, context: &StepContext<'_>, q: &[f64]) -> bool {
         let held = self.held_at(&context.stop_after(q).rest());
         self.share(&held) > MILD
     }
 
-    /// Writes the gradient (n,) of what holds the arm at rest at `q` with too much of its limits: the sum of the squares, relative to the limits.
+    /// Writes the gradient (n,) of half the sum of squares of the holding torques at `q` beyond a part of their limits, relative to these.
     pub fn write_strain_gradient(&mut self, q: &[f64], sum: &mut [f64]) {
         sum.fill(0.0);
         let limits = Point::from_slice(self.torques.limits());
@@ -295,7 +295,7 @@ impl StopTorques {
         })
     }
 
-    /// Writes the rests of a stop.
+    /// Writes the remainders of a stop.
     fn bound(&mut self, context: &StepContext<'_>, motion: &StoppedMotion<'_>) {
         let Self { torques, bend, rests, .. } = self;
         let Some(limited) = context.limited else { return };
@@ -366,7 +366,7 @@ impl StopTorques {
             for side in [-1.0, 1.0] {
                 let growth = side * (to[j] - from[j]);
                 let all = limit - side * from[j] - (side * self.drag(rates[j], j)).max(0.0);
-                // Of little, nearly all: an arm that holds itself with nearly all of a limit can still move.
+                // Nearly all of a small remainder may be used, so that an arm held with most of a limit can still move.
                 let room = (all - (1.0 - MILD) * limit).max(NEARLY_ALL * all);
                 if growth > room {
                     part = part.min((room / growth).max(0.0));

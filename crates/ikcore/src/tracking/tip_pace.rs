@@ -21,8 +21,9 @@ use crate::trajectory::polynomial;
 /// Limits that are kept.
 const KEPT: [TipField; 2] = [TipField::Speed, TipField::TurnSpeed];
 
-/// Fractions of a command tried, and how near to a limit ends the search.
+/// Number of fractions of a command tried.
 const TRIES: usize = 4;
+/// Relative distance from a limit at which the search ends.
 const NEAR: f64 = 1e-3;
 
 /// Ticks by which the straight line of a tick and the spline may be apart.
@@ -94,7 +95,7 @@ impl TipPace {
         self.factor(context, q) <= 1.0
     }
 
-    /// Factor by which the tips are too fast in the command `q` and the stop after it, at most; once beyond 1, of what was examined.
+    /// Upper bound of the factor by which tips are too fast in the command `q` and its stop; beyond 1, that of the part examined.
     fn factor(&mut self, context: &StepContext<'_>, q: &[f64]) -> f64 {
         let motion = context.stop_after(q);
         if !motion.is_spline() {
@@ -137,7 +138,7 @@ impl TipPace {
         }
     }
 
-    /// Most that the factor grows by in a tick.
+    /// Largest growth of the factor in a tick.
     fn growth(&mut self, q: &[f64], dt: f64) -> f64 {
         let robot = self.rates.robot();
         self.at.set(robot, q.iter().map(|q| polynomial([*q])), [0.0, 1.0]);

@@ -17,9 +17,9 @@ use crate::task::{CheckedTask, Goal, NamedTask, Task, Tolerance};
 /// Name in messages of the call that follows a whole path.
 pub(super) const TRACK: &str = "track";
 
-/// Largest effect of one joint in a weighted step, relative to that of the tip; less under acceleration or jerk limits, where light
-/// joints near a singularity have to slow down in time.
+/// Largest effect of one joint in a weighted step, relative to that of the tip.
 const LARGEST_EFFECT: f64 = 10.0;
+/// The same under acceleration or jerk limits, where light joints near a singularity have to slow down in time.
 const LARGEST_EFFECT_UNDER_ACCELERATION: f64 = 4.0;
 
 /// Options of [`track`](super::track()) and [`Session`](super::Session).
@@ -51,7 +51,7 @@ pub struct TrackOptions {
     pub ease: bool,
     /// Obstacles and self-collision to avoid; none by default.
     pub surroundings: Surroundings,
-    /// What is kept at every instant, between ticks too, and by the stop after each; nothing by default.
+    /// Constraints at every instant, between ticks too, and in the stop after each; none by default.
     pub keeps: Vec<Keep>,
     /// Whether an arm that comes no nearer to its target, though a configuration on it is known, goes there by a motion of its
     /// joints; true by default. It is for the library's own rule, and tasks without a region.

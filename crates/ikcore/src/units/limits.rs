@@ -15,8 +15,9 @@ const WIDE: [f64; 2] = [15.0, 30.0];
 /// Least velocity of joints that looks like degrees per second (rad/s).
 const FAST: f64 = 60.0;
 
-/// Speed of a tip that looks like millimetres per second (m/s), and turn speed that looks like degrees per second (rad/s).
+/// Speed of a tip (m/s) that looks like millimetres per second.
 const FAST_TIP: f64 = 20.0;
+/// Turn speed of a tip (rad/s) that looks like degrees per second.
 const FAST_TURN: f64 = 45.0;
 
 /// Slide (m) that looks like millimetres, with the multiple of the reach of the links.

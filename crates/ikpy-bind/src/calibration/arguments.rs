@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::convert::{Numbers, array, entries, point, rigid_matrices, shape_text};
 use crate::error::{invalid, raise};
 
-/// Keywords that say what was measured.
+/// Keywords that define the kind of the measurements.
 pub struct Kind<'a, 'py> {
     pub camera: Option<CameraPlace>,
     pub board: Option<&'a Bound<'py, PyAny>>,
@@ -41,7 +41,7 @@ pub fn read_fit(fit: Option<Vec<String>>, camera: bool) -> PyResult<Vec<Part>> {
     }
 }
 
-/// Reads what was measured; its shape and the keywords say which kind it is.
+/// Reads the measurements; their shape and the keywords define their kind.
 pub fn read_measured(value: &Bound<'_, PyAny>, pairs: bool, kind: &Kind<'_, '_>) -> PyResult<Measured> {
     let numbers = array("measured", value)?;
     let shape = numbers.shape().to_vec();

@@ -35,7 +35,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 ///         - with `plane`: heights of the tip above a plane (m,) (m), zero for contacts;
 ///         - with q (m, 2, n): distances between the tip's positions (m,) (m).
 ///     fit: what may differ from the model: "offsets" (the zero of each joint), "links" (the transform before each joint but the first),
-///         "tool", "base". With a camera, "tool" and "base" stand for the poses of camera and board. None: all; with a camera "tool" and
+///         "tool", "base". With a camera, "tool" and "base" mean the poses of camera and board. None: all; with a camera "tool" and
 ///         "base", which is hand-eye calibration.
 ///     sigma: standard deviation of the noise (m or pixels): a number, for poses also of angles (rad) or (length, angle), or one row per measurement, (m,)
 ///         or (m, 2). None: estimated from the residuals.

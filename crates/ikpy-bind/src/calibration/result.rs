@@ -14,7 +14,7 @@ use crate::robot::PyRobot;
 use crate::traversal::traversed;
 use crate::wording::said;
 
-/// What measurements tell about the parameters of a calibration.
+/// Identifiability of the parameters of a calibration.
 #[pyclass(name = "Identifiability", module = "beetle_ik", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyIdentifiability(Identifiability);
@@ -69,7 +69,7 @@ impl PyIdentifiability {
     }
 }
 
-/// The arm as it is built, and what is known of it. Errors of image points are in pixels, others in m.
+/// The arm as it is built, and the results of the fit. Errors of image points are in pixels, others in m.
 #[pyclass(name = "Calibration", module = "beetle_ik", frozen)]
 pub struct PyCalibration {
     core: Findings,
@@ -212,7 +212,7 @@ impl PyCalibration {
         (self.core.noise.length, self.core.noise.rotation)
     }
 
-    /// What the measurements tell about the parameters.
+    /// Identifiability of the parameters.
     #[getter]
     fn identifiable(&self) -> PyIdentifiability {
         PyIdentifiability(self.core.identifiability.clone())

@@ -35,7 +35,7 @@ use crate::wording::said;
 ///     task: part of the poses that counts, one of `tasks`, with a tool if needed. Each component stays within its
 ///         `tolerance` at every instant; a component of weight 0 is free. The planner uses this freedom. None: the
 ///         whole pose.
-///     keep: what else holds at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
+///     keep: further constraints at every instant, a `Keep` or a list of them, with "timed": for example, that a tool whose orientation the
 ///         path leaves free stays upright.
 ///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     method: "timed": optimises redundancy and timing together; "tpbso" or `TPBSO(...)`: redundancy by a beetle swarm,

@@ -6,7 +6,7 @@ use pyo3::types::PyTuple;
 
 use crate::pickling::stored_value;
 
-/// How a move of a program came out.
+/// Report on a move of a program.
 #[pyclass(name = "MoveReport", module = "beetle_ik", frozen, eq)]
 #[derive(Debug, PartialEq)]
 pub struct PyMoveReport(pub MoveReport);
@@ -37,14 +37,14 @@ impl PyMoveReport {
         self.0.speed
     }
 
-    /// What kept the tip more than 0.1 % below the speed asked for, between the blends of the move, a tuple of `SpeedBound`, in
+    /// Limits that kept the tip more than 0.1 % below the requested speed, between the blends of the move, a tuple of `SpeedBound`, in
     /// order of time; empty where it had that speed throughout, and where none is asked for.
     #[getter]
     fn bound_by<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.bound_by.iter().cloned().map(PySpeedBound))
     }
 
-    /// What the tip does on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests.
+    /// The motion of the tip on it, in words: its speed between blends, that the blends take the whole move, or that the arm rests.
     #[getter]
     fn message(&self) -> String {
         self.0.message()

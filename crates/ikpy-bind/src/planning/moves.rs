@@ -302,7 +302,7 @@ impl PyWait {
         made(MoveKind::Wait(seconds), 0.0, [None, name], Self)
     }
 
-    /// How long (s).
+    /// Duration (s).
     #[getter]
     fn seconds(self_: PyRef<'_, Self>) -> f64 {
         match self_.as_super().core.kind {

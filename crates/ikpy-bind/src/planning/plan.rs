@@ -134,7 +134,7 @@ impl PyPlan {
         self.core.freed.map(|freed| (freed.clearance, freed.until))
     }
 
-    /// What was kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
+    /// Constraints kept along the way, a list of pairs: each `Keep` of the call, and the largest error of each component of its task on
     /// the whole motion (m, rad), NaN for free ones; distance and angle for a task without weights or tolerances. These are bounds,
     /// at most a hundredth of the tolerance too large, computed at the first access.
     #[getter]
@@ -157,7 +157,7 @@ impl PyPlan {
         self.core.violations.iter().cloned().map(PyViolation).collect()
     }
 
-    /// How each move of a program came out, a list of `MoveReport` in the order of the moves; empty for other plans.
+    /// Reports on the moves of a program, a list of `MoveReport` in the order of the moves; empty for other plans.
     #[getter]
     fn moves(&self) -> Vec<PyMoveReport> {
         self.core.moves.iter().cloned().map(PyMoveReport).collect()

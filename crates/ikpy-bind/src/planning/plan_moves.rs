@@ -41,7 +41,7 @@ use crate::wording::said;
 ///     obstacles: a `Scene` or a list of obstacles to keep clear of.
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given.
-///     keep: what holds at every instant of the motion, a `Keep` or a list of them.
+///     keep: constraints at every instant of the motion, a `Keep` or a list of them.
 ///     stop: budgets of the search for each joint move among obstacles; None: as for `plan_point_to_point`.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     progress: True shows a progress bar; a callable is called with (done, total).

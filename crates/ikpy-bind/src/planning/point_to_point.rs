@@ -30,7 +30,7 @@ use crate::wording::said;
 ///     free_start: whether the arm may start nearer to something than the margin. It then moves out first, and no two
 ///         bodies come nearer than at the start; see `Plan.freed`.
 ///     task: part of the poses that counts, one of `tasks`, as for `solve`; None: all of it.
-///     keep: what holds at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
+///     keep: constraints at every instant of the motion, a `Keep` or a list of them, such as `upright(robot, tilt=0.1)`. It is certified,
 ///         not sampled; `Plan.kept` has the largest errors.
 ///     limits: position, velocity, acceleration, jerk, tip and torque limits; None: the robot's.
 ///     method: "minmax": joins the two configurations of the ends that are nearest in time, as fast as the limits allow;

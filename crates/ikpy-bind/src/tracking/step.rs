@@ -47,7 +47,7 @@ pub struct PyStep {
     pub around: OnceLock<Option<Box<Clearance>>>,
 }
 
-/// What the message of a step tells besides its outcome.
+/// Remarks of the message of a step, besides its outcome.
 #[derive(Debug, Default)]
 pub struct Remarks {
     /// Joints that began outside their limits, if any still was.

@@ -225,7 +225,7 @@ impl PyTrackResult {
 ///     margin: least distance from obstacles and between links (m); None: 1 mm.
 ///     self_collision: whether links must keep clear of each other; None: where `obstacles` are given, and for a robot with
 ///         several tips all of whose collision shapes are known.
-///     keep: a `Keep`, for example from `upright`, or several: what holds at every instant, between ticks too, and during the stop after
+///     keep: a `Keep`, for example from `upright`, or several: constraints at every instant, between ticks too, and during the stop after
 ///         each. The arm goes as near to the path as that allows. None: nothing.
 ///     seed: seed of the random draws; the same seed gives the same bits.
 ///     limit_at: velocity limit that holds in a tick: the smallest over its "interval" or, as in the paper, the limit

@@ -336,7 +336,7 @@ impl PyTracker {
         Ok(())
     }
 
-    /// What holds at every instant, a tuple of `Keep`.
+    /// Constraints at every instant, a tuple of `Keep`.
     #[getter]
     fn keep<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let (session, robot) = (self.session(), &self.first.get().core);

@@ -57,7 +57,7 @@ _TASKS: dict[str, Callable[..., Task]] = {
 
 @dataclass(frozen=True)
 class Program:
-    """Moves, and what they must meet of their poses."""
+    """Moves, and the tasks at their poses."""
 
     moves: list[Move]
     task: Task | dict[str, Task] | None = None

@@ -1,4 +1,4 @@
-"""What the robot of a planner keeps clear of: named objects, point clouds, and parts that it carries."""
+"""Surroundings of the robot of a planner: named objects, point clouds, and parts that it carries."""
 
 import re
 from collections.abc import Iterator

@@ -166,7 +166,7 @@ impl<'p> ClearPlanner<'p> {
                     None
                 }
                 Some(Fault::Broken) => {
-                    // Denser waypoints follow more closely what holds at each of them.
+                    // Denser waypoints keep closer to the constraints, which hold at each of them.
                     self.accuracy *= 0.25;
                     Some(Status::Stalled)
                 }
@@ -304,7 +304,7 @@ impl<'p> ClearPlanner<'p> {
         Ok(Error::NotFound { what: format!("a motion past {place}"), problem })
     }
 
-    /// The error that breaks what is to be kept at the first posture of a layer, if it is broken at all of them.
+    /// The error that breaks a constraint at the first posture of a layer, if some is broken at all of them.
     fn broken_at(&self, layer: usize) -> Option<String> {
         let broken = |q: &Point| self.problem.keeps.broken_at(q);
         self.postures[layer].iter().map(broken).collect::<Option<Vec<_>>>()?.into_iter().next()

@@ -1,4 +1,4 @@
-//! Why the arm cannot follow a path beyond a place.
+//! Reason why the arm cannot follow a path beyond a place.
 
 use super::passage::{Passage, Waypoint};
 use super::sequence::{Swept, swept_on_to};

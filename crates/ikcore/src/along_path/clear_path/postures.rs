@@ -13,8 +13,9 @@ use crate::rng;
 use crate::solver::Unattended;
 use crate::task::Target;
 
-/// Distance between the layers along the path (m, rad), and the fewest and most intervals between them.
+/// Distance between layers along the path (m, rad).
 const SPACING: f64 = 0.03;
+/// Minimum and maximum number of intervals between layers.
 const INTERVALS: [f64; 2] = [50.0, 400.0];
 
 /// Number of segments from which on a path gets layers at its points alone: it is straight between them, unlike the

@@ -46,7 +46,7 @@ impl Reached {
     }
 }
 
-/// What the joints sweep on a motion that goes on to `q`.
+/// Returns the ranges of the joints, widened to include `q`.
 pub(super) fn swept_on_to([low, high]: &Swept, q: &[f64]) -> Swept {
     [low.iter().zip(q).map(|(a, b)| a.min(*b)).collect(), high.iter().zip(q).map(|(a, b)| a.max(*b)).collect()]
 }

@@ -18,9 +18,9 @@ use crate::obstacle::ClearSpace;
 /// Largest number of layers at the points of a path; a path with more has layers at equal distances.
 const MOST_LAYERS: usize = 400;
 
-/// Parts into which the interval to the next layer is divided where a stretch goes on beyond its last layer, and halvings of the first
-/// part that it does not make.
+/// Number of steps towards the next layer beyond the end of a stretch.
 const PARTS: usize = 8;
+/// Maximum number of halvings of a failed step.
 const HALVINGS: usize = 12;
 
 /// Postures along a part of a path.
@@ -93,7 +93,7 @@ fn layers_of(tip_path: &TipPath) -> Vec<f64> {
 struct Part {
     first: usize,
     sequence: Vec<Point>,
-    /// Why the arm does not go on from its end.
+    /// Reason why the arm does not go on from its end.
     reason: Option<String>,
 }
 
@@ -176,7 +176,7 @@ impl<'a> Divider<'a> {
         Ok(sequence)
     }
 
-    /// Why the arm does not get from a posture of one layer to another layer.
+    /// Explains why the arm does not get from a posture of one layer to another layer.
     fn reason(&mut self, layer: usize, q: &Point, to: usize, swept: Option<Swept>) -> String {
         let from = (self.fractions[layer], &q[..]);
         let why = why_it_ends(&mut self.passage, self.space, from, self.fractions[to], swept);
@@ -318,7 +318,7 @@ impl<'a> Divider<'a> {
     }
 }
 
-/// What the joints sweep.
+/// Range that each joint covers along a sequence.
 fn swept(sequence: &[Point]) -> Option<Swept> {
     let first = sequence.first()?;
     Some(sequence.iter().fold([first.clone(), first.clone()], |swept, q| swept_on_to(&swept, q)))

@@ -61,7 +61,7 @@ pub(crate) struct Interpolation<'a> {
     pub robot: &'a Robot,
     /// The path.
     pub tip_path: &'a TipPath,
-    /// What holds at every instant.
+    /// Constraints at every instant.
     pub keeps: PathKeeps<'a>,
     /// Behaviour at corners.
     pub corners: Corners,
@@ -87,8 +87,9 @@ const HALVINGS: usize = 20;
 /// Shortest interval that is halved, as a fraction of the path: where joints jump, no knots help.
 const SHORTEST: f64 = 1e-9;
 
-/// Maximum number of knots: this, and more for each row of the path.
+/// Maximum number of knots, without those per row of the path.
 const MOST_KNOTS: usize = 2000;
+/// Further knots per row of the path.
 const KNOTS_A_ROW: usize = 2;
 
 impl Interpolation<'_> {

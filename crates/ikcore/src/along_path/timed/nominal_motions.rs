@@ -28,8 +28,9 @@ const RUNGS: [f64; 4] = [1e-2, 1e-3, 1e-4, 0.0];
 /// Values of the redundancy at which the closed form gives further starts.
 const REDUNDANCY: usize = 4;
 
-/// Number of motions kept, and smallest distance between their starts or ends (rad, m): the shortest is not always the fastest.
+/// Maximum number of motions kept: the shortest is not always the fastest.
 const BRANCHES: usize = 8;
+/// Smallest distance between the starts or ends of two of them (rad, m).
 const APART: f64 = 0.5;
 
 /// Difference below which motions are the same (rad, m).

@@ -40,7 +40,7 @@ pub(crate) struct PathProblem<'a> {
     pub accuracy: f64,
     /// The same path with rounded corners; empty where it has none.
     rounded: Vec<RoundedPath>,
-    /// What holds at every instant.
+    /// Constraints at every instant.
     pub keeps: PathKeeps<'a>,
     /// The options of the call, with a start that the gate has taken.
     pub options: &'a AlongPathOptions,
@@ -51,7 +51,7 @@ pub(crate) struct PathProblem<'a> {
 /// A path with rounded corners.
 struct RoundedPath {
     path: TipPath,
-    /// How far it is off the path with corners (m, rad) at most.
+    /// Largest distance from the path with corners (m, rad).
     off: f64,
     /// The accuracy that it is made for.
     most: f64,

@@ -22,9 +22,9 @@ const MET: f64 = 1e-16;
 /// Squared distance at which a target counts as met if no step leads nearer: that of `solve`.
 const AS_NEAR_AS_SOLVES: f64 = 1e-12;
 
-/// Largest distance of a configuration from the middle of its neighbours: relative to their distance, plus an absolute
-/// part (rad, m).
+/// Largest distance of a configuration from the middle of its neighbours, relative to their distance.
 const STRAY: f64 = 0.3;
+/// Absolute part of that distance (rad, m).
 const STRAY_ANYWAY: f64 = 0.02;
 
 /// Damping relative to squared error, as in the library's Levenberg-Marquardt.
@@ -33,8 +33,9 @@ const DAMPING: f64 = 0.05;
 /// Fraction of the accuracy of a path by which [`Projection::approach`] may leave the tip off it.
 pub(crate) const NEAR_ENOUGH: f64 = 0.25;
 
-/// Steps of an approach, and their least damping: singular directions with singular values below its root (0.02) hardly move.
+/// Maximum number of steps of an approach.
 const APPROACH_STEPS: usize = 6;
+/// Minimum damping of an approach: directions with singular values below its root (0.02) hardly move.
 const APPROACH_DAMPING: f64 = 5e-4;
 
 /// Projection of configurations onto targets of a path, within a box.
@@ -46,7 +47,7 @@ pub(crate) struct Projection<'a> {
     kept: KeepTasks,
 }
 
-/// What holds at every instant of the motion, of the tip of a robot without the tool of its task.
+/// Constraints at every instant of the motion, of the tip of a robot without the tool of its task.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathKeeps<'a> {
     pub robot: &'a Robot,

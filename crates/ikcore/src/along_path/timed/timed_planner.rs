@@ -21,7 +21,7 @@ const HOPELESS: f64 = 1.05;
 /// The same factor for a motion that is shortened within the whole tolerance band, before parts of the band are tried.
 const PROMISING: f64 = 1.25;
 
-/// What finer grids of the timing save, in terms of what the last halving saved: measured 1.0 to 1.2.
+/// Saving of all finer grids of the timing, as a multiple of that of the last halving: measured 1.0 to 1.2.
 const STILL_SAVED: f64 = 1.5;
 
 /// Least number of waypoints for that.

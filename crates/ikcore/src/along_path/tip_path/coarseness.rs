@@ -1,4 +1,4 @@
-//! How well the rows of a path determine the curve that they were taken from.
+//! Accuracy with which the rows of a path determine the curve that they were taken from.
 
 use nalgebra::{UnitQuaternion, Vector3};
 

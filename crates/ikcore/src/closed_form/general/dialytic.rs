@@ -11,6 +11,7 @@ use crate::math::vector::dot;
 pub const EQUATIONS: usize = 6;
 /// Number of products in an equation, index 3 i + j.
 pub const PRODUCTS: usize = 9;
+/// Size of the square system: the six equations, and their multiples by x.
 const SIZE: usize = 12;
 
 /// Coefficients of the six equations.

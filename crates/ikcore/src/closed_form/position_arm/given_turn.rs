@@ -81,7 +81,7 @@ impl PositionArm {
     }
 }
 
-/// Those of the first four joints that are not `joint`.
+/// Returns the first four joints without `joint`.
 fn left_of(joint: usize) -> [usize; 3] {
     [usize::from(joint == 0), 1 + usize::from(joint <= 1), 2 + usize::from(joint <= 2)]
 }

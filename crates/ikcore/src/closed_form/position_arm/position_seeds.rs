@@ -23,9 +23,9 @@ const SPACING: f64 = 0.15;
 /// Largest number of values of the scan.
 const VALUES: usize = 64;
 
-/// Distance (rad) between two turns of the fifth joint where it is scanned, and what the least of them may gain between two, as a
-/// fraction of the rise to the next.
+/// Distance (rad) between two turns of a scan of the fifth joint.
 const TURN_SPACING: f64 = 0.25;
+/// Gain assumed between two turns of the scan, as a fraction of the rise to the next.
 const GAIN: f64 = 0.25;
 
 /// Turns of the fifth joint that the scan begins with, where the tip is far off its axis.
@@ -47,7 +47,7 @@ const SLACK: f64 = 0.5;
 /// Difference of the angles (rad) of two seeds that lead to the same optimum.
 const SAME: f64 = 1e-4;
 
-/// What a descent may gain beyond a seed of arms with parallel axes in the middle, at least.
+/// Minimum gain assumed for a descent from a seed of an arm with parallel middle axes.
 const LEAST_RESERVE: f64 = 0.02;
 
 /// Values of one joint (rad).

@@ -7,7 +7,7 @@ use super::scan::{MOST, ScanSample};
 use crate::closed_form::angle::Angle;
 use crate::closed_form::angle_range::{AngleRange, may_hold};
 
-/// What the solutions of the first joints begin with.
+/// Treatment of the fifth joint while the first four are solved.
 pub enum ScanFrom<'a> {
     /// The tip, which no joint after the fourth moves.
     OnAxis,

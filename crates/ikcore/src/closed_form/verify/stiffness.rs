@@ -1,4 +1,4 @@
-//! How firmly a pose holds a configuration: the least change of the pose per unit of joint motion.
+//! Stiffness of a configuration at its pose: the least change of the pose per unit of joint motion.
 
 use crate::math::real::Real;
 

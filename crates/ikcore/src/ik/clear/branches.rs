@@ -57,6 +57,10 @@ impl ClearSearch<'_, '_, '_> {
             None if self.has_candidates() && branches.doubt == Doubt::None && !branches.singular => {
                 Some(Err(Exhausted::All))
             }
+            None if branches.singular && self.has_candidates() => match self.clear_member(preference, &branches) {
+                Some(q) => Some(Ok(q)),
+                None => self.clear_by_pushing(),
+            },
             None => self.clear_by_pushing(),
         }
     }

@@ -1,7 +1,8 @@
 //! Solutions clear of obstacles and of the robot itself.
 //!
 //! `clear_solution` is the call. A `ClearSearch` tests candidates: a blocked configuration is pushed along its self-motion, and
-//! remembered in case no solution is clear. `branches` takes candidates from the closed form, `restarts` from searches;
+//! remembered in case no solution is clear. `branches` takes candidates from the closed form, `family_members` from the families
+//! of singular poses, `restarts` from searches;
 //! `least_cost` compares several. Every solution returned as solved was certified by
 //! [`ClearSpace::holds`](crate::obstacle::ClearSpace::holds).
 
@@ -10,6 +11,7 @@ mod blocked_solutions;
 mod branches;
 mod clear_search;
 mod clear_solution;
+mod family_members;
 mod least_cost;
 mod restarts;
 

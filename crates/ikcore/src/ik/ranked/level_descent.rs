@@ -35,20 +35,22 @@ const SAME: f64 = 1e-9;
 /// Corrections of the levels below after a step; they converge quadratically.
 const CORRECTIONS: usize = 5;
 
-/// Error of a level (m, rad) up to which products of its Jacobian are second derivatives enough to lower it, and the relative
-/// decrease of the squared error in a step from which they are enough for the next.
+/// Error of a level (m, rad) below which Gauss-Newton suffices.
 const SMALL: f64 = 1e-3;
+/// Relative decrease of the squared error in a step above which Gauss-Newton suffices for the next.
 const FAST: f64 = 0.5;
 
-/// Displacement (rad, m) of the differences that give second derivatives.
+/// Step (rad, m) of the finite differences for second derivatives.
 const APART: f64 = 1e-6;
 
-/// Relative curvature below which a direction is flat: of products of Jacobians, and of differences.
+/// Relative curvature of products of Jacobians below which a direction is flat.
 const FLAT: f64 = 1e-12;
+/// The same for finite differences.
 const FLAT_BY_DIFFERENCES: f64 = 1e-5;
 
-/// Error of a level relative to the least known, and in m or rad, beyond which a descent cannot win any more.
+/// Relative excess over the best known error of a level at which a descent is abandoned.
 const WORSE: f64 = 1e-3;
+/// Absolute excess (m, rad) on top of it.
 const WORSE_BY: f64 = 1e-5;
 
 /// Squared errors of the levels (m^2, rad^2), the lowest level first.

@@ -19,8 +19,9 @@ const REDRAWN: f64 = 0.4;
 /// Evaluation budget of the descent from such a start to the lowest level.
 const TO_LOWEST: usize = 40;
 
-/// Difference of an error (m, rad), and relative one, that count as none.
+/// Difference of two errors (m, rad) that counts as none.
 const SAME: f64 = 1e-7;
+/// Relative difference that counts as none, on top of it.
 const RELATIVE: f64 = 1e-6;
 
 /// Returns the solution in place of `missed`, which did not meet all targets; `missed` itself for tasks without levels.

@@ -16,11 +16,17 @@ pub struct SelfMotion {
     pub lower_cut: Option<usize>,
     /// Joint whose limit ends the curve at its last configuration.
     pub upper_cut: Option<usize>,
-    /// Whether the closed form proves that there is no other curve: each passes every arm angle.
+    /// Whether the closed form proves that there is no other curve: each passes every arm angle, and none crosses another, as at a
+    /// singular pose.
     pub complete: bool,
 }
 
 impl SelfMotion {
+    /// Single configuration, through which no curve could be followed.
+    pub(super) fn single(q: &[f64]) -> Self {
+        Self { joints: q.len(), values: q.to_vec(), closed: false, lower_cut: None, upper_cut: None, complete: false }
+    }
+
     /// Configurations (k, n), row by row (rad, m).
     pub fn values(&self) -> &[f64] {
         &self.values

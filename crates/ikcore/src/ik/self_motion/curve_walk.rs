@@ -97,6 +97,27 @@ impl<'w, 'p> Walk<'w, 'p> {
         is_curve.then(|| Self { problem, here, bend, length: longest, longest, at, evaluations: 1, max_evaluations })
     }
 
+    /// Starts at the solution `q` like [`enter`](Self::enter), where several curves may cross, on the one in this direction. `None`
+    /// if the task does not allow the direction.
+    pub fn enter_along(
+        problem: &'w mut Problem<'p>,
+        q: &[f64],
+        direction: &[f64],
+        max_evaluations: usize,
+        longest: f64,
+    ) -> Option<Self> {
+        let mut at = Linearization::default();
+        problem.linearize(q, &mut at);
+        if !at.more.is_empty() {
+            return None;
+        }
+        let along = tangent(&at, q, direction);
+        let is_allowed = norm(&along) > 0.5 * norm(direction);
+        let here = CurvePoint { q: q.into(), along: normalized(along) };
+        let bend = Point::from_elem(0.0, q.len());
+        is_allowed.then(|| Self { problem, here, bend, length: longest, longest, at, evaluations: 1, max_evaluations })
+    }
+
     /// Current point.
     pub fn here(&self) -> &CurvePoint {
         &self.here

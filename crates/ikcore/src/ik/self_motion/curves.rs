@@ -1,5 +1,6 @@
 //! All curves of configurations that keep the tip at a target: `self_motion`.
 
+use super::crossings::{beside, crossings};
 use super::curve::SelfMotion;
 use super::cut::parts;
 use super::seeds::{Seeds, by_closed_form};
@@ -9,9 +10,10 @@ use super::wrapped_limits::WrappedLimits;
 use crate::error::{Error, Result};
 use crate::ik::attempt::Attempt;
 use crate::ik::context::SolveContext;
+use crate::ik::first_branch::by_closed_form as solved_by_closed_form;
 use crate::ik::solve_options::SolveOptions;
 use crate::limits::Limits;
-use crate::math::vector::distance;
+use crate::math::vector::{distance, norm};
 use crate::objective::{Bounds, Point};
 use crate::rng;
 use crate::robot::Robot;
@@ -26,6 +28,9 @@ const ON_CURVE: f64 = 0.01;
 
 /// Consecutive solutions on known curves after which the search ends.
 const PATIENCE: usize = 40;
+
+/// Largest number of curves whose crossings with others are looked for.
+const MOST_CROSSED: usize = 64;
 
 /// Smallest and largest spacing of points (rad, m).
 const SPACINGS: [f64; 2] = [1e-3, 0.5];
@@ -56,7 +61,9 @@ impl Default for SelfMotionOptions {
 /// position.
 ///
 /// The closed form, at 64 values of its parameter, or a search from random starts finds a point of each curve; the curve is
-/// then traced in short steps, past the joint limits, which cut it afterwards.
+/// then traced in short steps, past the joint limits, which cut it afterwards. So are curves that cross these, as at singular
+/// poses, and the one through a start that reaches the target. A solution through which no curve can be followed is returned as
+/// a curve of one configuration, so that there is always a curve where a solution is known.
 ///
 /// # Errors
 /// Any [`enum@Error`] for wrong input; [`Error::Contradiction`] for an arm without one joint more than the task needs.
@@ -85,20 +92,167 @@ pub fn self_motion(
         Some(start) => limits.around(start),
         None => limits,
     };
-    let (mut curves, complete) = match by_closed_form(robot, &mut attempt, VALUES) {
-        Some(Seeds { seeds, complete }) => (through(&seeds, &mut attempt, &limits, *spacing), complete),
-        None => (searched(&mut attempt, &limits, *spacing), false),
-    };
-    let mut found = Vec::new();
-    for curve in &mut curves {
-        make_exact(curve, &mut attempt);
-        for part in parts(curve, &limits) {
-            found.extend(unwrapped(part, *spacing, &mut attempt, &limits, start.as_deref()));
-        }
-    }
+    let mut search = CurveSearch { limits: &limits, spacing: *spacing, start: start.as_deref(), curves: Vec::new() };
+    let (mut found, complete) = search.all(robot, &mut attempt);
     found.iter_mut().for_each(|curve| curve.complete = complete);
     sort(&mut found, start.as_deref());
     Ok(found)
+}
+
+/// Search for the curves of one target.
+struct CurveSearch<'c> {
+    limits: &'c WrappedLimits<'c>,
+    spacing: f64,
+    start: Option<&'c [f64]>,
+    /// Curves found, past the joint limits.
+    curves: Vec<TracedCurve>,
+}
+
+impl CurveSearch<'_> {
+    /// Finds the curves inside the limits, and whether there are provably no others.
+    fn all(&mut self, robot: &Robot, attempt: &mut Attempt<'_, '_>) -> (Vec<SelfMotion>, bool) {
+        let mut complete = match by_closed_form(robot, attempt, VALUES) {
+            Some(Seeds { seeds, complete }) => {
+                seeds.iter().for_each(|seed| self.add_through(seed, attempt));
+                complete
+            }
+            None => {
+                self.search(attempt);
+                false
+            }
+        };
+        let start = self.start.filter(|q| attempt.problem.assess(q).score.solved).and_then(|q| exact(q, attempt));
+        if let Some(start) = &start {
+            self.add_known(start, attempt);
+        }
+        complete &= !self.add_crossing(attempt);
+        let mut found = self.inside(0, attempt);
+        if found.is_empty()
+            && attempt.monitor.keep_going()
+            && let Some(known) = solved(attempt)
+        {
+            complete = false;
+            found = self.through_known(&known, attempt);
+        }
+        if let Some(start) = &start
+            && !self.passes_inside(&found, start)
+        {
+            complete = false;
+            found.extend(self.through_known(start, attempt));
+        }
+        (found, complete)
+    }
+
+    /// Traces the curve through the solution `seed`, unless it is known.
+    fn add_through(&mut self, seed: &[f64], attempt: &mut Attempt<'_, '_>) {
+        if !self.knows(seed) && attempt.monitor.keep_going() {
+            self.add(seed, None, attempt);
+        }
+    }
+
+    /// Traces the curve through the solution `q`; where several cross, those that solutions beside it are on.
+    fn add_known(&mut self, q: &[f64], attempt: &mut Attempt<'_, '_>) {
+        if self.knows(q) || !attempt.monitor.keep_going() || self.add(q, None, attempt) {
+            return;
+        }
+        for there in beside(q, attempt, self.limits) {
+            if !self.knows(&there) && attempt.monitor.keep_going() {
+                let along = self.limits.apart(&there, q);
+                self.add(q, Some(&along), attempt);
+            }
+        }
+    }
+
+    fn knows(&self, q: &[f64]) -> bool {
+        self.curves.iter().any(|curve| curve.passes(self.limits, q, ON_CURVE, self.spacing))
+    }
+
+    /// Traces a curve. Returns whether there is one.
+    fn add(&mut self, q: &[f64], along: Option<&[f64]>, attempt: &mut Attempt<'_, '_>) -> bool {
+        let curve = traced(attempt.problem, self.limits, q, along, self.spacing, attempt.monitor);
+        let Some(curve) = curve.filter(|curve| curve.points.len() > 1) else { return false };
+        attempt.budget.evaluations += curve.evaluations;
+        self.curves.push(curve);
+        true
+    }
+
+    /// Traces the curves that cross known ones. Returns whether any curve crosses another.
+    fn add_crossing(&mut self, attempt: &mut Attempt<'_, '_>) -> bool {
+        let (mut next, mut any) = (0, false);
+        while next < self.curves.len() && next < MOST_CROSSED && attempt.monitor.keep_going() {
+            let places = crossings(&self.curves[next], self.spacing, attempt);
+            any |= !places.is_empty();
+            for place in places {
+                beside(&place, attempt, self.limits).iter().for_each(|seed| self.add_through(seed, attempt));
+            }
+            next += 1;
+        }
+        any || next < self.curves.len()
+    }
+
+    /// Traces the curves through solutions from random starts, until [`PATIENCE`] consecutive solutions are on known curves.
+    fn search(&mut self, attempt: &mut Attempt<'_, '_>) {
+        let mut x0 = attempt.first_start(None);
+        let mut known = 0;
+        while known < PATIENCE && !attempt.budget.is_spent() && attempt.monitor.keep_going() {
+            let solution = attempt.solve_from(&x0);
+            if solution.status != Status::Solved {
+                break;
+            }
+            let is_known = self.knows(&solution.q) || !self.add(&solution.q, None, attempt);
+            known = if is_known { known + 1 } else { 0 };
+            attempt.next_start(&mut x0);
+        }
+    }
+
+    /// Curves through the solution `q` inside the limits; `q` alone if none could be followed there.
+    fn through_known(&mut self, q: &[f64], attempt: &mut Attempt<'_, '_>) -> Vec<SelfMotion> {
+        let known = self.curves.len();
+        self.add_known(q, attempt);
+        let mut found = self.inside(known, attempt);
+        if !self.passes_inside(&found, q) {
+            found.push(SelfMotion::single(q));
+        }
+        found
+    }
+
+    /// Parts inside the limits of the curves from number `first` on.
+    fn inside(&mut self, first: usize, attempt: &mut Attempt<'_, '_>) -> Vec<SelfMotion> {
+        let mut found = Vec::new();
+        for curve in &mut self.curves[first..] {
+            make_exact(curve, attempt);
+            for part in parts(curve, self.limits) {
+                found.extend(unwrapped(part, self.spacing, attempt, self.limits, self.start));
+            }
+        }
+        found
+    }
+
+    /// Whether one of the curves `found` passes `q`.
+    fn passes_inside(&self, found: &[SelfMotion], q: &[f64]) -> bool {
+        let near = self.spacing + ON_CURVE;
+        found.iter().flat_map(SelfMotion::iter).any(|at| norm(&self.limits.apart(at, q)) < near)
+    }
+}
+
+/// A solution of the target, as `solve` finds it.
+fn solved(attempt: &mut Attempt<'_, '_>) -> Option<Point> {
+    let solution = solved_by_closed_form(attempt, None).unwrap_or_else(|| {
+        let x0 = attempt.first_start(None);
+        attempt.solve_from(&x0)
+    });
+    if solution.status == Status::Solved { exact(&solution.q, attempt) } else { None }
+}
+
+/// The solution `q` as exact as the points of curves; `None` if the limits do not allow it.
+fn exact(q: &[f64], attempt: &mut Attempt<'_, '_>) -> Option<Point> {
+    let bounds = attempt.context.bounds();
+    let mut inside = Point::from_slice(q);
+    bounds.clip(&mut inside);
+    let q = attempt.descend_beyond(&LevenbergMarquardt::default(), inside, EXACT, bounds);
+    let error = attempt.problem.assess(&q).error;
+    let missed = error.position.unwrap_or(0.0).max(error.rotation.unwrap_or(0.0));
+    (missed <= 4.0 * EXACT * EXACT).then_some(q)
 }
 
 fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
@@ -117,51 +271,6 @@ fn require_curves(robot: &Robot, target: &Target) -> Result<()> {
             robot.dof()
         ).into(),
     })
-}
-
-/// Traces the curves through these configurations.
-fn through(
-    seeds: &[Point],
-    attempt: &mut Attempt<'_, '_>,
-    limits: &WrappedLimits<'_>,
-    spacing: f64,
-) -> Vec<TracedCurve> {
-    let mut curves: Vec<TracedCurve> = Vec::new();
-    for seed in seeds {
-        if !attempt.monitor.keep_going() {
-            break;
-        }
-        if !curves.iter().any(|curve| curve.passes(limits, seed, ON_CURVE, spacing))
-            && let Some(curve) = traced(attempt.problem, limits, seed, spacing, attempt.monitor)
-        {
-            attempt.budget.evaluations += curve.evaluations;
-            curves.push(curve);
-        }
-    }
-    curves
-}
-
-/// Traces the curves through solutions from random starts, until [`PATIENCE`] consecutive solutions are on known curves.
-fn searched(attempt: &mut Attempt<'_, '_>, limits: &WrappedLimits<'_>, spacing: f64) -> Vec<TracedCurve> {
-    let mut curves: Vec<TracedCurve> = Vec::new();
-    let mut x0 = attempt.first_start(None);
-    let mut known = 0;
-    while known < PATIENCE && !attempt.budget.is_spent() && attempt.monitor.keep_going() {
-        let solution = attempt.solve_from(&x0);
-        if solution.status != Status::Solved {
-            break;
-        }
-        let is_known = curves.iter().any(|curve| curve.passes(limits, &solution.q, ON_CURVE, spacing));
-        known = if is_known { known + 1 } else { 0 };
-        if !is_known {
-            match traced(attempt.problem, limits, &solution.q, spacing, attempt.monitor) {
-                Some(curve) => curves.push(curve),
-                None => known += 1,
-            }
-        }
-        attempt.next_start(&mut x0);
-    }
-    curves
 }
 
 /// Projects the points of a curve onto the target.

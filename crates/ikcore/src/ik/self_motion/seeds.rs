@@ -22,11 +22,12 @@ pub(super) fn by_closed_form(robot: &Robot, attempt: &mut Attempt<'_, '_>, count
         (0..robot.dof()).map(|j| if slides(&j) { values[j] } else { open }).collect()
     };
     let (lower, upper) = (limits(bounds.lower(), f64::NEG_INFINITY), limits(bounds.upper(), f64::INFINITY));
-    let mut seeds = Vec::new();
+    let (mut seeds, mut is_singular) = (Vec::new(), false);
     for value in family.arcs(&family.limits(&lower, &upper)).spread(count) {
         let branches = family.branches_at(value);
         attempt.budget.evaluations += branches.evaluations;
+        is_singular |= branches.singular;
         seeds.extend(branches.iter().map(|(q, _)| Point::from_slice(q)));
     }
-    Some(Seeds { seeds, complete: family.is_by_arm_angle() })
+    Some(Seeds { seeds, complete: family.is_by_arm_angle() && !is_singular })
 }

@@ -25,18 +25,22 @@ pub(super) struct TracedCurve {
     pub evaluations: usize,
 }
 
-/// Traces the curve through the solution `seed`; `None` if it is not on exactly one curve. The limits of a prismatic joint end
-/// the curve.
+/// Traces the curve through the solution `seed`, or the one in the direction `along` where several cross; `None` if it is not on
+/// exactly one curve. The limits of a prismatic joint end the curve.
 pub(super) fn traced(
     problem: &mut Problem<'_>,
     limits: &WrappedLimits<'_>,
     seed: &[f64],
+    along: Option<&[f64]>,
     spacing: f64,
     monitor: &mut dyn Monitor,
 ) -> Option<TracedCurve> {
     let longest = STEP_FRACTION * spacing;
     let most_steps = (MOST_LENGTH / longest) as usize;
-    let mut walk = Walk::enter(problem, seed, 16 * most_steps, longest)?;
+    let mut walk = match along {
+        Some(along) => Walk::enter_along(problem, seed, along, 16 * most_steps, longest)?,
+        None => Walk::enter(problem, seed, 16 * most_steps, longest)?,
+    };
     let begin = walk.here().clone();
     let mut points = vec![begin.clone()];
     let closed = walk_on(&mut walk, limits, spacing, most_steps, monitor, &mut points);

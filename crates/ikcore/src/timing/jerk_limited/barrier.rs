@@ -15,8 +15,9 @@ const GAPS: [f64; 4] = [0.5, 0.1, 2e-2, 2e-3];
 /// Those of a search that begins near the fastest rate. Smaller ones gain nothing: a rate that touches its limits at the points exceeds them
 /// by more between them, and the motion is slowed by as much.
 const LATER_GAPS: [f64; 2] = [1.5e-2, 1e-3];
-/// Factor by which such a start is slowed down until it keeps the constraints, and how often at most.
+/// Factor by which such a start is slowed down, again and again, until it keeps the constraints.
 const SLOWED: f64 = 0.97;
+/// Maximum number of these factors.
 const SLOWINGS: i32 = 30;
 /// Newton steps for each barrier at most.
 const STEPS: usize = 100;

@@ -251,7 +251,7 @@ impl<'a> TorquesAt<'a> {
 }
 
 impl TorqueRow {
-    /// What is left above and below, as parts of the limit, and the derivatives by y and y'.
+    /// Remaining torque above and below, as fractions of the limit, and its derivatives by y and y'.
     #[inline]
     pub(super) fn rooms(&self, [y, slope, _]: &[f64; 3]) -> [(f64, [f64; 3]); 2] {
         let torque = self.hold + self.of_y * y + self.of_slope * slope;

@@ -38,19 +38,21 @@ use crate::interrupt::checkpoint_at;
 use crate::limits::ROUNDING;
 use crate::trajectory::Trajectory;
 
-/// Rounds of refinement of the knots at most; one that saves less than this fraction of the duration is the last.
+/// Maximum number of knot refinements.
 const REFINEMENTS: usize = 6;
+/// Relative saving of duration below which refinement ends.
 const WORTHWHILE: f64 = 1e-3;
-/// One that saves less than this fraction is the last, even if the motion exceeds limits between the places where they are imposed.
+/// Relative saving below which refinement ends even if limits are exceeded between grid points.
 const WORTHLESS: f64 = 1e-4;
-/// Excess over a limit between the places where it is imposed that calls for another round.
+/// Relative excess over a limit between grid points that calls for another refinement.
 const FAITHFUL: f64 = 2e-3;
 /// Change of the jerk in an interval or at a knot, as a part of its limit, at which intervals are halved.
 const CHANGE: f64 = 0.3;
-/// Slowdown of a motion along a path with speeds of its own from which on these are asked for again, so that they are reached.
+/// Relative slowdown above which a path with speeds of its own is timed again for higher ones, so that its own are reached.
 const SHORT: f64 = 1e-4;
-/// Excess over a position limit (rad, m) that counts as none; and how far inside the limit the path is moved after a larger one, relative to it.
+/// Tolerated excess over a position limit (rad, m).
 const TOUCHES: f64 = 1e-10;
+/// Distance inside a position limit to which the path moves after a larger excess, as a multiple of the excess.
 const ROOM: f64 = 2.0;
 /// Number of the shortest intervals that a motion may consist of.
 const SHORTEST: f64 = 5_000.0;
@@ -64,7 +66,7 @@ pub(super) fn fastest(path: &JointPath, profile: &SpeedProfile, limits: &Constan
     let Some(inside) = farther_inside(path, &motion, limits) else { return Ok(motion) };
     match timed(&inside, profile, limits, REFINEMENTS) {
         Err(error @ Error::Interrupted) => Err(error),
-        // Nothing is found farther inside: the first motion stands.
+        // Without a motion farther inside, the first one is kept.
         Err(_) => Ok(motion),
         again => again,
     }

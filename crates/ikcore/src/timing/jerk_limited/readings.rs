@@ -5,15 +5,18 @@ use super::super::joint_path::JointPath;
 use super::super::reachability::SpeedProfile;
 use super::clock::Clock;
 
-/// Intervals of equal times: so many; more for each piece of the path, or for each time that an acceleration needs to reach its limit,
-/// whichever are fewer; and at most so many.
+/// Base number of equal time intervals.
 const LEAST: f64 = 150.0;
+/// Further intervals per piece of the path, if these are fewer than those by ramps.
 const PER_PIECE: f64 = 20.0;
+/// Further intervals per acceleration ramp, the shortest time in which an acceleration reaches its limit.
 const PER_RAMP: f64 = 10.0;
+/// Maximum number of intervals.
 const MOST: f64 = 20_000.0;
 
-/// Knots closer than this fraction of such an interval are left out: those in time, and breaks of the path.
+/// Fraction of an interval within which a knot at an equal time is left out beside another knot.
 const CLOSE: f64 = 0.3;
+/// The same for two breaks or ends of the path.
 const CLOSE_BREAKS: f64 = 0.1;
 
 /// Parts into which the intervals at both ends are cut: with limited jerk the motion takes longer there.

@@ -5,7 +5,7 @@
 //! micrometres. Joint velocities are not extrapolated: on a redundant arm that would sustain null-space motion. If the box or a
 //! singularity keeps a step from lowering the error, Levenberg-Marquardt solves the tick; it never raises the error. A pose of
 //! which one part comes first is then met in that order. Joints with weights approach a far target that stands still first: heavy
-//! ones would otherwise make what the others cannot do in one tick.
+//! ones would otherwise make up for what the others cannot do in one tick.
 
 use std::borrow::Cow;
 
@@ -144,7 +144,7 @@ impl MidStepState {
             model = match (self.lowers(found, tick, model, &bounds), model) {
                 (true, _) => Model::Here,
                 (false, Model::MidTick) => Model::Begin,
-                // All joints together may do what weights have left to few.
+                // All joints together may reach a target that weights have left to few.
                 (false, _) if bounds.weights().is_some() => {
                     bounds = Cow::Owned(bounds.into_owned().weighted(None));
                     model

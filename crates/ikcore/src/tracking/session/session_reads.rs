@@ -1,4 +1,4 @@
-//! What can be read of a session between its ticks.
+//! Readings of a session between its ticks.
 
 use std::sync::Arc;
 
@@ -99,12 +99,12 @@ impl Session {
         self.safety.as_ref().map_or_else(FilterWork::default, |safety| safety.work())
     }
 
-    /// What is kept at every instant.
+    /// Constraints at every instant.
     pub fn keeps(&self) -> &[Keep] {
         self.safety.as_ref().and_then(|safety| safety.kept()).map_or(&[], Kept::keeps)
     }
 
-    /// The constraint nearest to its tolerance, in words; `None` if nothing is kept.
+    /// The constraint nearest to its tolerance, in words; `None` without constraints.
     pub fn tightest(&self) -> Option<String> {
         self.safety.as_ref()?.kept()?.tightest_at(&self.arm.q)
     }

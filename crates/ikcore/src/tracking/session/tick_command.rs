@@ -1,4 +1,4 @@
-//! Command of a tick: that of the rule or of the stop, changed until it keeps all that a session promises; and the status that tells of it.
+//! Command of a tick, from the rule or the stop, changed until it keeps all promises of a session; and its status.
 
 use super::Session;
 use crate::math::vector::write_within;
@@ -38,7 +38,7 @@ impl Session {
     }
 
     /// Changes the command `found` by the rule to one that keeps the arm clear and all constraints, and holds pairs of tips or, for a
-    /// `settled` arm, to the braking one. Returns what caused the change, if it was not the pairs.
+    /// `settled` arm, to the braking one. Returns the obstruction that caused the change, unless the pairs did.
     pub(super) fn filter(&mut self, settled: bool, found: &mut TickResult) -> Option<Holder> {
         let Some(safety) = &mut self.safety else {
             if settled {
@@ -132,7 +132,7 @@ impl Session {
         }
     }
 
-    /// What keeps the goal from its target; nothing while the arm stops.
+    /// Obstruction that keeps the goal from its target; `None` while the arm stops.
     pub(super) fn holds_goal(&self) -> Option<Holder> {
         self.safety.as_ref().filter(|_| self.stopping.is_none()).and_then(|safety| safety.holds_goal())
     }

@@ -3,7 +3,9 @@
 //! On the way a joint needs its limit at most or, where that is more, what holds the arm and a little beyond it to move; and each command makes
 //! the arm easier to hold.
 
-use super::{GENTLE, Known, OTHER_PARTS, OtherLimits, TorquePace};
+use super::command_search::GENTLE;
+use super::limited_pace::{KnownStop, TorquePace};
+use super::other_limits::OtherLimits;
 use crate::objective::Point;
 use crate::tracking::step_context::StepContext;
 use crate::tracking::tracked_arm::TrackedArm;
@@ -18,7 +20,7 @@ impl TorquePace {
     /// Whether a chosen stop ends where the joints cannot hold the arm.
     pub(super) fn cannot_stay(&mut self, arm: &TrackedArm) -> bool {
         let context = arm.context();
-        self.known != Known::Nothing && !self.can_hold(&context.stop_after(&context.braking()).rest())
+        self.known != KnownStop::Nothing && !self.can_hold(&context.stop_after(&context.braking()).rest())
     }
 
     /// Leads an arm that cannot be held where its stop ends to where it is easier to hold: the quickest way, by the command `wanted`, or as it
@@ -45,7 +47,7 @@ impl TorquePace {
         self.stop.allow_limits();
         if found {
             self.held_by = self.stop.too_heavy(&rest).or(self.held_by);
-            self.known = Known::Leaving;
+            self.known = KnownStop::Leaving;
         } else {
             arm.set_braking_part(stop_part);
             q.copy_from_slice(&brake);
@@ -67,16 +69,5 @@ impl TorquePace {
             *q += (slope[j] * room(j)).abs() / steepest * (farthest - *q);
         }
         q
-    }
-
-    /// Makes the stop after the command `q` as hard as is certified.
-    fn stop_hardest(&mut self, arm: &mut TrackedArm, others: &mut OtherLimits<'_>, q: &[f64]) {
-        let before = arm.braking_part();
-        let is_certified = |part: &f64| {
-            arm.set_braking_part(*part);
-            self.check(arm, others, q).is_ok()
-        };
-        let harder = OTHER_PARTS.into_iter().filter(|part| *part > before).find(is_certified);
-        arm.set_braking_part(harder.unwrap_or(before));
     }
 }

@@ -47,12 +47,12 @@ const RESTING: f64 = 0.02;
 /// Least decrease of the error (m/rad) that a joint at its limit prevents; small, since a stretched elbow changes little.
 const SLOPE: f64 = 1e-4;
 
-/// Fraction of the error of the resting arm that the goal may have.
+/// Largest error of a goal, as a fraction of that of the resting arm.
 const BETTER: f64 = 0.8;
 
-/// Fraction of the error below which a descent from a moving arm ends if its rule gets to the target, and further descents in the
-/// ticks after one that does not.
+/// Error of a descent, relative to that at rest, below which the rule of a moving arm reaches the target.
 const NEARER: f64 = 0.5;
+/// Number of further descents, one per tick, after one that does not show this.
 const DOUBTS: usize = 5;
 
 /// Distance of a joint (rad, m) up to which the rule gets to the target by itself, as it averages noise.
@@ -84,7 +84,7 @@ pub(super) struct EndOfTick<'a> {
     pub monitor: &'a mut dyn Monitor,
 }
 
-/// What the arm does from the next tick on.
+/// Action from the next tick on.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "it is used at once, and a box would be on the heap")]
 pub(super) enum Next {
@@ -115,7 +115,7 @@ enum State {
     Returning,
 }
 
-/// What decides on lines of the joints.
+/// Checks of straight lines in joint space.
 pub(super) struct OpenLines<'a> {
     pub safety: Option<&'a mut SafetyFilter>,
     pub torques: Option<&'a mut TorquePace>,
@@ -159,7 +159,7 @@ impl WayBack {
         }
     }
 
-    /// What keeps the arm away from its target, if its rule does not bring it nearer.
+    /// Obstruction that keeps the arm away from its target, if its rule does not bring it nearer.
     pub fn away(&self) -> Option<Away> {
         self.away
     }

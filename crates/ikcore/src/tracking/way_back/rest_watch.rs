@@ -6,8 +6,9 @@
 /// Error that counts as met, whatever the tolerance (m, rad).
 const MET: f64 = 1e-3;
 
-/// Time without progress after which the error has ceased to fall (s), and the relative decrease that is progress.
+/// Time without progress after which the error has ceased to fall (s).
 const PATIENCE: f64 = 0.3;
+/// Relative decrease that counts as progress.
 const PROGRESS: f64 = 0.1;
 
 /// Smallest error, in changes of a tick, that noise does not explain. The length of an error changes less than its direction.

@@ -17,23 +17,25 @@ use crate::task::Target;
 use crate::tracking::progress::time_of_way;
 use crate::tracking::step_context::StepContext;
 
-/// Evaluations of a descent, and of all work in a tick.
+/// Evaluation budget of a descent, and of a tick.
 pub(super) const DESCENT: usize = 40;
 
-/// Drawn starts, of which the first half is at increasing distances, and solutions of theirs that suffice.
+/// Maximum number of drawn starts, the first half of them at increasing distances.
 const DRAWN: usize = 96;
+/// Number of solutions that ends the draws.
 const ENOUGH: usize = 4;
 
-/// Configurations kept, and their least distance from each other (rad, m).
+/// Maximum number of configurations kept.
 const KEPT: usize = 8;
+/// Smallest distance between two of them (rad, m).
 const APART: f64 = 0.1;
 
 /// Excess over a limit (rad, m) that is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Distance from a limit (rad, m) below which a configuration is cramped, and the factor on its travel time at the limit itself:
-/// tracking would soon end there again.
+/// Distance from a limit (rad, m) below which a configuration is cramped: tracking would soon end there again.
 const ROOM: f64 = 0.1;
+/// Factor on its travel time at the limit itself.
 const CRAMPED: f64 = 2.0;
 
 /// Configuration on the target.
@@ -62,7 +64,7 @@ pub(super) struct GoalSearch {
     begun: usize,
 }
 
-/// What the search of a tick draws on.
+/// Random numbers and monitor of the search of a tick.
 pub(super) struct Means<'a> {
     pub rng: &'a mut LazyRng,
     pub monitor: &'a mut dyn Monitor,

@@ -1,8 +1,24 @@
-//! Error type of the crate: every variant names the argument, its value, the bound it violates and what would be valid.
+//! Error type of the crate: mistakes of a caller, with names, values and advice as data.
+//!
+//! | file | what |
+//! |---|---|
+//! | `checks` | checks of numbers that many calls share |
+//! | `text` | values and names as messages quote them |
+//! | `worded` | an error in the words of another language |
+
+mod checks;
+mod text;
+mod worded;
 
 use thiserror::Error;
 
-use crate::message::{Message, Setting};
+use crate::message::Message;
+
+pub(crate) use checks::{
+    require_at_least_one, require_factor, require_finite, require_fraction, require_not_negative, require_positive,
+    require_proper_fraction,
+};
+pub(crate) use text::{given, shortened, suggestion};
 
 /// `Result` type with this crate's [`enum@Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -34,7 +50,7 @@ pub enum Error {
         what: Message,
         /// Expected length, for example "7 joints".
         expected: String,
-        /// The value that was given.
+        /// Length that was given.
         got: usize,
     },
     /// A number is outside its allowed range.
@@ -450,6 +466,16 @@ impl Error {
         Self::UnknownOption { what: what.into(), value: shortened(value), known }
     }
 
+    /// Creates an [`Error::OutOfRange`].
+    pub(crate) fn out_of_range(what: impl Into<Message>, requirement: impl Into<Message>, value: f64) -> Self {
+        Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
+    }
+
+    /// Returns [`Error::Unreadable`], with the path cut to a readable length.
+    pub(crate) fn unreadable(path: &str, problem: impl ToString) -> Self {
+        Self::Unreadable { path: shortened(path), problem: problem.to_string() }
+    }
+
     /// Names the file of a URDF that cannot be read; other errors stay as they are.
     pub fn in_urdf_file(self, path: &str) -> Self {
         match self {
@@ -457,124 +483,4 @@ impl Error {
             other => other,
         }
     }
-
-    /// Returns the error with these words in place of the plain ones of each setting in its messages.
-    pub fn worded(mut self, words: impl Fn(&Setting) -> String + Copy) -> Self {
-        if let Self::InRow { error, .. } | Self::InProblem { error, .. } | Self::InFile { error, .. } = &mut self {
-            **error = error.clone().worded(words);
-        }
-        for message in self.messages() {
-            *message = message.worded(words).into();
-        }
-        self
-    }
-
-    /// Returns the parts that may name settings.
-    fn messages(&mut self) -> Vec<&mut Message> {
-        match self {
-            Self::NotFinite { what, .. } | Self::WrongLength { what, .. } => vec![what],
-            Self::OutOfRange { what, requirement, .. } => vec![what, requirement],
-            Self::SeveralTips { call, remedy, .. } => vec![call, remedy],
-            Self::UnsupportedLimit { method, remedy, .. } => vec![method, remedy],
-            Self::OutsideLimits { what, excess, .. } => vec![what, excess],
-            Self::NoCapsules { remedy, .. }
-            | Self::InCollision { remedy, .. }
-            | Self::NoPace { remedy, .. }
-            | Self::UnknownJoint { remedy, .. } => vec![remedy],
-            Self::ImpossibleInertia { what, .. } => vec![what],
-            Self::InvalidRobot { problem, .. }
-            | Self::NoDynamics { problem, .. }
-            | Self::InvalidMeasurement { problem }
-            | Self::Urdf { problem, .. }
-            | Self::Srdf { problem, .. }
-            | Self::Unreachable { problem, .. }
-            | Self::NotFound { problem, .. }
-            | Self::InvalidMove { problem, .. }
-            | Self::NoUsableEnd { problems: problem, .. }
-            | Self::Infeasible { problem }
-            | Self::Contradiction { problem } => vec![problem],
-            _ => vec![],
-        }
-    }
-
-    /// Creates an [`Error::OutOfRange`].
-    pub(crate) fn out_of_range(what: impl Into<Message>, requirement: impl Into<Message>, value: f64) -> Self {
-        Self::OutOfRange { what: what.into(), requirement: requirement.into(), value }
-    }
-}
-
-/// Writes a number as it was given; a huge one with an exponent, not with hundreds of zeros.
-pub(crate) fn given(value: f64) -> String {
-    const HUGE: f64 = 1e21;
-    if value.is_finite() && value.abs() >= HUGE { format!("{value:e}") } else { value.to_string() }
-}
-
-/// Checks that every entry is finite; `name(i)` names the offending entry.
-pub(crate) fn require_finite(what: impl Into<Message>, values: &[f64], name: impl Fn(usize) -> String) -> Result<()> {
-    match values.iter().position(|v| !v.is_finite()) {
-        None => Ok(()),
-        Some(i) => Err(Error::NotFinite { what: what.into(), place: name(i), value: values[i] }),
-    }
-}
-
-/// Checks that `value` is finite and above zero.
-pub(crate) fn require_positive(what: &str, value: f64) -> Result<()> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::out_of_range(what, "positive and finite", value)) }
-}
-
-/// Checks that `value` is finite and not negative.
-pub(crate) fn require_not_negative(what: &str, value: f64) -> Result<()> {
-    let holds = value.is_finite() && value >= 0.0;
-    if holds { Ok(()) } else { Err(Error::out_of_range(what, "zero or more and finite", value)) }
-}
-
-/// Checks that `value` is above 0 and at most 1.
-pub(crate) fn require_factor(what: &str, value: f64) -> Result<()> {
-    let holds = value > 0.0 && value <= 1.0;
-    if holds { Ok(()) } else { Err(Error::out_of_range(what, "above 0 and at most 1", value)) }
-}
-
-/// Checks that `value` is between 0 and 1.
-pub(crate) fn require_fraction(what: &str, value: f64) -> Result<()> {
-    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(Error::out_of_range(what, "between 0 and 1", value)) }
-}
-
-/// Checks that `value` is at least 0 and below 1.
-pub(crate) fn require_proper_fraction(what: &str, value: f64) -> Result<()> {
-    if (0.0..1.0).contains(&value) { Ok(()) } else { Err(Error::out_of_range(what, "at least 0 and below 1", value)) }
-}
-
-/// Checks that `count` is not zero.
-pub(crate) fn require_at_least_one(what: &str, count: usize) -> Result<()> {
-    if count > 0 { Ok(()) } else { Err(Error::out_of_range(what, "at least 1", 0.0)) }
-}
-
-/// Length up to which a message repeats a text (characters).
-const ECHO_LENGTH: usize = 200;
-
-impl Error {
-    /// Returns [`Error::Unreadable`], with the path cut to a readable length.
-    pub(crate) fn unreadable(path: &str, problem: impl ToString) -> Self {
-        Self::Unreadable { path: shortened(path), problem: problem.to_string() }
-    }
-}
-
-/// Cuts a given text to a readable length for a message.
-pub(crate) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(ECHO_LENGTH) {
-        None => text.into(),
-        Some((end, _)) => format!("{}...", &text[..end]),
-    }
-}
-
-/// Returns ` (did you mean 'x'?)` for the candidate nearest to `name`, or an empty text if none is near.
-pub(crate) fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
-    let wanted = name.to_lowercase();
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(&wanted, &candidate.to_lowercase()), candidate))
-        .filter(|(similarity, _)| *similarity > 0.75)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| format!(" (did you mean '{candidate}'?)"))
-        .unwrap_or_default()
 }
