@@ -554,14 +554,15 @@ class Robot:
 
         Controllers that report angles from 0 to 360 degrees, or count turns, become usable this way. A joint inside its limits
         stays where it is, one outside takes the fewest turns, and a joint without limits comes to (-pi, pi]; with `near`, each
-        takes the turn nearest to it. Rounding beyond a limit is taken off. Joints that slide stay as they are.
+        takes the turn nearest to it. Rounding beyond a limit is taken off. A joint that no turn brings inside may be outside by
+        5 degrees, as the start of a motion may. Joints that slide stay as they are, outside by 5 mm at most.
 
         Args:
             q: joint positions (n,) or (m, n) (rad, m).
             near: configuration (n,) to which the result is as near as possible; None: see above.
 
         Raises:
-            LimitError: no whole turn brings a joint inside its limits, or a joint that slides is outside (an
+            LimitError: a joint is farther outside its limits at every whole turn, or a joint that slides is (an
                 `InvalidInputError`).
 
         For example:
@@ -3097,8 +3098,8 @@ class Tracker:
                 None: from the difference to the previous target.
             stamp: time at which the target was measured, on the tracker's own clock, `time` (s); None: the end of the
                 tick. The model-based rule follows the motion of the targets up to now, over 0.25 s at most, under
-                acceleration or jerk limits; without these a stamp is refused. A target older than the last one is
-                ignored.
+                acceleration or jerk limits; without these a stamp is refused. A target whose stamp is not after the last
+                one is ignored; the message says so, and the step is solved only if the arm meets this target as well.
         """
     def stop(self) -> float:
         """Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target

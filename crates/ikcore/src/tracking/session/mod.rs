@@ -19,7 +19,7 @@ use super::rule::{RunningRule, TickResult, TickRule};
 use super::safety_filter::SafetyFilter;
 use super::settling::Settling;
 use super::step::Step;
-use super::target_stream::Arrival;
+use super::target_stream::{Arrival, IgnoredTargets, Taken};
 use super::tip_pace::TipPace;
 use super::torque_pace::{OtherLimits, TorquePace};
 use super::track_options::TrackOptions;
@@ -198,7 +198,11 @@ impl Session {
             arrival.check(to)?;
             self.read(arrival)?;
         }
-        let sampled_ago = self.arm.targets.take(arrival, to).map(|ago| ago / self.arm.dt);
+        let (sampled_ago, ignored) = match self.arm.targets.take(arrival, to) {
+            Taken::Nothing => (None, None),
+            Taken::New(ago) => (Some(ago / self.arm.dt), None),
+            Taken::Ignored(ignored) => (None, Some(ignored)),
+        };
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let settled = self.is_settled();
@@ -231,11 +235,19 @@ impl Session {
         } else {
             status
         };
+        let status = if self.misses(ignored.as_ref(), status, &found.q) { Status::Capped } else { status };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
         let ceased = || (status != Status::Solved && self.running.has_outlived_targets()).then_some(Idle::Ceased);
-        let idle = self.idle().or_else(ceased);
+        let idle = ignored.map(|ignored| ignored.reason).or(self.idle()).or_else(ceased);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, idle, interrupted })
+    }
+
+    /// Whether a tick at `q` that meets the last targets misses those that it ignored.
+    fn misses(&self, ignored: Option<&IgnoredTargets>, status: Status, q: &[f64]) -> bool {
+        let TrackedArm { robot, tasks, .. } = &self.arm;
+        status == Status::Solved
+            && ignored.is_some_and(|ignored| !tasks.with(&ignored.targets).assess(robot, q).score.solved)
     }
 
     /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule; an arrival
