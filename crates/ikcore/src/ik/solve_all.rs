@@ -11,7 +11,7 @@ use super::context::SolveContext;
 use super::solution::{Nearest, Solution, SolveReport};
 use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
-use super::whole_turns::{all_turns, bring_near, count_of_turns};
+use super::whole_turns::{all_turns, bring_near, count_of_turns, has_endless_turns};
 use crate::error::{Error, Result, require_at_least_one, require_positive};
 use crate::message::{Message, Setting, message};
 use crate::objective::{Bounds, Point};
@@ -44,7 +44,8 @@ pub struct AllOptions {
     /// Number of parameter values at which a redundant arm with a closed form is solved, spread over those that its limits
     /// allow. 0 means a search.
     pub redundancy: usize,
-    /// Whether to return each solution at all whole turns inside the limits.
+    /// Whether to return each solution at all whole turns inside the limits. A joint that is unlimited on a side has endlessly
+    /// many: it stays at the nearest one, and the set is not complete.
     pub turns: bool,
 }
 
@@ -65,7 +66,7 @@ pub struct SolutionSet {
     pub obstruction: Option<String>,
     /// Best miss of a search that found no solution.
     pub miss: Option<Box<Solution>>,
-    /// Whether there is provably no other solution inside the limits, whole turns aside.
+    /// Whether there is provably no other solution inside the limits, whole turns aside unless all of them were asked for.
     pub complete: bool,
     /// Whether the pose is singular: a solution represents a family in which a joint is free.
     pub singular: bool,
@@ -197,6 +198,8 @@ pub fn solve_all_tips(
     }
     if *turns {
         found.solutions = at_all_turns(&context, &found.solutions)?;
+        let is_endless = has_endless_turns(context.robot(), context.bounds());
+        found.complete &= !is_endless || found.solutions.is_empty();
     }
     if let Some(start) = start {
         found.solutions.sort_by_distance(start);
