@@ -554,14 +554,15 @@ class Robot:
 
         Controllers that report angles from 0 to 360 degrees, or count turns, become usable this way. A joint inside its limits
         stays where it is, one outside takes the fewest turns, and a joint without limits comes to (-pi, pi]; with `near`, each
-        takes the turn nearest to it. Rounding beyond a limit is taken off. Joints that slide stay as they are.
+        takes the turn nearest to it. Rounding beyond a limit is taken off. A joint that no turn brings inside may be outside by
+        5 degrees, as the start of a motion may. Joints that slide stay as they are, outside by 5 mm at most.
 
         Args:
             q: joint positions (n,) or (m, n) (rad, m).
             near: configuration (n,) to which the result is as near as possible; None: see above.
 
         Raises:
-            LimitError: no whole turn brings a joint inside its limits, or a joint that slides is outside (an
+            LimitError: a joint is farther outside its limits at every whole turn, or a joint that slides is (an
                 `InvalidInputError`).
 
         For example:
@@ -1945,7 +1946,8 @@ def solve_all(
             a closed form are returned, those of a search differ by 0.1.
         redundancy: number of parameter values at which a redundant arm with a closed form is solved, spread over the
             range that its limits allow. 0: a search is used instead.
-        turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
+        turns: return each solution at all whole turns inside the limits. A joint that is unlimited on a side has infinitely many: it
+            stays at the nearest one, and `complete` is False.
         task: part of the target that counts, one of `tasks`; None: all of it.
         solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
         position_tolerance: largest position error (m).
@@ -2349,7 +2351,8 @@ class SolutionSet:
     @property
     def complete(self) -> bool:
         """Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
-        where `limit` or `separation` left solutions out, beside singular poses, and for tolerances above 1e-5.
+        where `limit` or `separation` left solutions out, beside singular poses, for tolerances above 1e-5, and with `turns` for
+        an arm with an unlimited joint.
         """
     @property
     def singular(self) -> bool:
@@ -3097,8 +3100,8 @@ class Tracker:
                 None: from the difference to the previous target.
             stamp: time at which the target was measured, on the tracker's own clock, `time` (s); None: the end of the
                 tick. The model-based rule follows the motion of the targets up to now, over 0.25 s at most, under
-                acceleration or jerk limits; without these a stamp is refused. A target older than the last one is
-                ignored.
+                acceleration or jerk limits; without these a stamp is refused. A target whose stamp is not after the last
+                one is ignored; the message says so, and the step is solved only if the arm meets this target as well.
         """
     def stop(self) -> float:
         """Starts the stop, as fast as the limits allow: each following `step(None)` is a tick of it, until a target
@@ -3834,7 +3837,7 @@ def time_optimal(
         joint_names: n names; None: "q1", "q2" and so on.
         tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
             parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
-            is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+            is smoothed. A wider tolerance hardly ever takes longer. None or 0: exactly on the path.
         robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
             `tip_turn_speed` of `limits` are kept for its tips, and `torque` for its joints. None: no robot, and no limits of tips or torques.
 

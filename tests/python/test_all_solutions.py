@@ -149,3 +149,14 @@ def test_solutions_within_the_tolerances_alone_are_in_a_complete_set() -> None:
                 assert np.abs(apart).max(axis=1).min() < 1e-3, (other.q, found.q)
                 nearly += max(other.position_error, other.rotation_error) > 1e-8
     assert nearly > 15
+
+
+def test_whole_turns_of_an_unlimited_joint_are_not_complete() -> None:
+    arm = bik.Robot.named("ur3e")
+    pose = arm.fk([0.4, -1.2, 1.1, -1.3, 0.9, 10.0])
+    assert bik.solve_all(arm, pose).complete
+    turned = bik.solve_all(arm, pose, turns=True)
+    assert not turned.complete
+    assert "no others" not in turned.message
+    within = arm.with_limits(lower=-7.0, upper=7.0)
+    assert bik.solve_all(within, pose, turns=True).complete

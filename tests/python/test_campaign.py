@@ -140,7 +140,7 @@ SPOILED = {
         "the budget is not exact",
     ),
     "dead_ends": (
-        "away += 0.1",
+        "q = np.asarray(q) + 0.3",
         "the arm stays away from its target",
     ),
     "held_arms": (

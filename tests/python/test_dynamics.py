@@ -446,6 +446,10 @@ WRONG: list[tuple[Any, str]] = [
         "causes it is too large, got NaN",
     ),
     (lambda: PANDA.with_payload(-1.0), "payload: the mass is -1 kg: it cannot be negative"),
+    (
+        lambda: PANDA.with_payload(1e308, center=(0, 0, 0.05)),
+        "payload: mass, centre and inertia matrix must be at most 1e50, got 1e308",
+    ),
     (lambda: PANDA.with_payload(np.nan), "payload: mass, centre and inertia matrix must be finite, got NaN"),
     (
         lambda: PANDA.with_payload(1.0, matrix=[[1, 1, 0], [0, 1, 0], [0, 0, 1]]),

@@ -200,7 +200,7 @@ def load(old: str = "", new: str = "", **links: str) -> bik.Robot:
             lambda: load("revolute", "floating"),
             Urdf,
             "URDF line 3: joint 'a' is floating, and a chain takes only revolute, continuous, prismatic, fixed and "
-            "mimic joints: take base and tip on one side of it, such as base 'upper'",
+            "mimic joints: take base and tip on one side of it, a base from 'upper' on or a tip up to 'base'",
         ),
         (
             lambda: load('name="arm">', 'name="arm" xmlns:xacro="http://wiki.ros.org/xacro"><xacro:include/>'),

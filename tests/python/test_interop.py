@@ -416,7 +416,7 @@ def test_mujoco_models_keep_their_kinematics(mujoco: object, tip: str | None, tm
          "b (0)"),
         ("<body name='b'><geom size='1'/><freejoint name='f'/></body>", "", {"tip": "b"},
          "MuJoCo model: joint 'f' is floating, and a chain takes only revolute, continuous, prismatic, fixed and mimic "
-         "joints: take base and tip on one side of it, such as base 'b'"),
+         "joints: take base and tip on one side of it, a base from 'b' on or a tip up to 'world'"),
         ("", "<equality><joint joint1='turn' joint2='elbow' polycoef='0 1 2 0 0'/>"
          "<joint joint1='turn' joint2='elbow' polycoef='0 1 3 0 0'/></equality>", {},
          "MuJoCo model: the joint equality of 'turn' and 'elbow' couples the joints turn, elbow, which is not followed "

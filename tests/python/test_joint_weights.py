@@ -362,3 +362,20 @@ def test_weights_that_have_no_meaning_are_refused() -> None:
         with pytest.raises(Invalid) as error:
             call()
         assert str(error.value) == message
+
+
+def test_a_heavy_base_stays_within_tolerances_too() -> None:
+    task = bik.tasks.Pose(tolerance=[0.002] * 3 + [0.2] * 3)
+    weights = heavy_base(100.0)
+    for seed in (4, 21, 42, 7, 8):
+        rng = np.random.default_rng(seed)
+        target = MOBILE.fk(START)
+        way = rng.normal(size=3)
+        target[:3, 3] += 0.1 * way / np.linalg.norm(way)
+
+        def cost(task: bik.tasks.Task | None, target: NDArray[np.float64] = target) -> float:
+            found = bik.solve(MOBILE, target, start_q=START, joint_weights=weights, task=task)
+            assert found.success, found.message
+            return float(np.linalg.norm(weights * (found.q - START)))
+
+        assert cost(task) <= 1.001 * cost(None)

@@ -75,3 +75,19 @@ def test_a_method_that_keeps_nothing_is_refused() -> None:
     with pytest.raises(bik.InvalidInputError) as told:
         bik.plan_along_path(arm, star, keep=keep, method="tpbso")
     assert str(told.value) == 'what is to be kept along a path needs method="timed"'
+
+
+def test_a_region_holds_along_a_path_or_the_plan_fails() -> None:
+    start = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8])
+    pose = ARM.fk(start)
+    free, half = [np.inf] * 3, np.array([0.2, 0.03, 0.2])
+    box = [pose[:3, 3] - half, pose[:3, 3] + half]
+    keep = bik.Keep(pose[:3, 3], bik.tasks.Position(tolerance=free, region=box))
+    for way, holds in ((0.02, True), (0.1, False)):
+        poses = np.tile(pose, (15, 1, 1))
+        poses[:, 1, 3] += np.linspace(0.0, way, 15)
+        plan = bik.plan_along_path(ARM, poses, start_q=start, keep=keep, limits=LIMITS)
+        assert plan.success is holds, plan.message
+        if not holds:
+            assert "no plan keeps everything" in plan.message
+            assert "distance above y" in plan.message

@@ -86,6 +86,56 @@ def test_wrong_targets_leave_the_tracker_as_it_was() -> None:
         assert np.array_equal(spoiled.step(TARGET).q, clean.step(TARGET).q)
 
 
+def moved(meters: float) -> np.ndarray:
+    target = PANDA.fk(READY)
+    target[1, 3] += meters
+    return target
+
+
+@pytest.mark.parametrize("restart", [1, 60])
+def test_a_stamp_that_is_not_newer_is_told(restart: int) -> None:
+    """A driver that leaves every stamp at 0, and a clock that starts again."""
+    arm = bik.Tracker(PANDA, READY, dt=0.01, limits=LIMITS)
+    for tick in range(restart):
+        assert "ignored" not in arm.step(moved(0.0), stamp=0.01 * tick).message
+    for tick in range(50):
+        step = arm.step(moved(0.005 * (tick + 1)), stamp=0.0)
+        assert not step.success
+        assert step.status is bik.Status.CAPPED
+        assert step.message.startswith("this target is ignored: its stamp, 0 s, is not after that of the last one, ")
+        assert "leave stamp out" in step.message
+        assert "tracker.time" in step.message
+    for _ in range(50):
+        step = arm.step(moved(0.25))
+    assert step.status is bik.Status.IMPROVED
+
+
+def test_packets_that_come_late_or_again_change_nothing() -> None:
+    """The arm goes on as without them, and has solved what it meets."""
+    given, spared = (bik.Tracker(PANDA, READY, dt=0.01, limits=LIMITS) for _ in range(2))
+    for tick in range(100):
+        stamp, target = 0.03 * tick, moved(0.0 if tick < 50 else 0.0005 * (tick - 50))
+        for arm in (given, spared):
+            arm.step(target, stamp=stamp)
+        late, none = given.step(moved(0.3), stamp=stamp - 0.05), spared.step(None)
+        np.testing.assert_array_equal(late.q, none.q)
+        assert not late.success
+        again, none = given.step(target, stamp=stamp), spared.step(None)
+        np.testing.assert_array_equal(again.q, none.q)
+        assert (again.status, again.message) == (none.status, none.message)
+    at_rest = bik.Tracker(PANDA, READY, dt=0.01, limits=LIMITS)
+    at_rest.step(moved(0.0), stamp=0.01)
+    assert at_rest.step(moved(0.0), stamp=0.005).success
+
+
+def test_a_stamp_ahead_of_the_clock_is_told_the_clock() -> None:
+    with pytest.raises(
+        bik.InvalidInputError, match=r"tracker\.time advances by dt in each step; leave stamp out"
+    ) as told:
+        tracker().step(TARGET, stamp=0.5)
+    assert "at most 0.002, the end of the tick (s) on the clock of the tracker" in str(told.value)
+
+
 def test_what_belongs_to_a_target() -> None:
     with pytest.raises(bik.BeetleIkError) as caught:
         tracker().step(None, stamp=0.0)

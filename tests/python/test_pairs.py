@@ -108,7 +108,7 @@ LINKS = "its links: base, upper, hand, left, right"
         (
             lambda: HAND.with_srdf("<robot><disable_collisions link1='a' link2='b'/></robot>"),
             bik.UrdfError,
-            "SRDF: it is for another robot: 'arm' has no two links that it disables, such as 'a'; " + LINKS,
+            "SRDF: it is for another robot: 'arm' has no link 'a' and none of the pairs that it disables; " + LINKS,
         ),
         (
             lambda: HAND.with_attached("hnd", bik.obstacles.Sphere((0, 0, 0), 0.1)),

@@ -386,3 +386,64 @@ def test_a_place_that_something_blocks_is_in_collision_not_out_of_reach() -> Non
     assert blocked.status == bik.Status.IN_COLLISION
     assert "inside obstacle 0 (Sphere) at the best of" in blocked.message
     assert errors(robot, blocked.q, target)[0] < 1e-6
+
+
+@pytest.mark.parametrize("preference", [{"prefer": "nearest"}, {"prefer": "best", "goals": bik.goals.Centring()}])
+@pytest.mark.parametrize("first", ["position", "orientation"])
+def test_an_order_holds_beside_a_preference(preference: dict[str, object], first: str) -> None:
+    panda, start = bik.Robot.named("panda"), [0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.8]
+    target = bik.pose((0.85, 0.0, 0.3))
+    found = bik.solve(panda, target, start_q=start, task=bik.tasks.Pose(first=first), **preference)  # type: ignore[arg-type]
+    given_up = {"position": GIVEN_UP, "orientation": bik.Status.POSITION_GIVEN_UP}
+    assert found.status == given_up[first], found.message
+    assert (found.position_error if first == "position" else found.rotation_error) < 1e-6
+
+
+def test_a_straight_approach_ends_at_the_place_if_told_so() -> None:
+    start, rng, planned = np.array([-0.3, 0.2, 0.4, 0.3, 0.1]), np.random.default_rng(3), 0
+    line, limits = (
+        bik.StraightLine(0.01, direction=(0, 0, -1), frame="base"),
+        bik.Limits(velocity=1.0, acceleration=4.0),
+    )
+    for _ in range(20):
+        target = HOBBY.fk(start + rng.uniform(-0.4, 0.4, HOBBY.dof))
+        target[:3, :3] = target[:3, :3] @ Rotation.from_rotvec([0.1, 0.2, 0.1]).as_matrix()
+        nearest = HOBBY.fk(bik.solve(HOBBY, target, start_q=start).q)
+
+        def plan(end: Array, task: bik.tasks.Task | None = None) -> bik.Plan | None:
+            try:
+                return bik.plan_point_to_point(HOBBY, start_q=start, end=end, task=task, approach=line, limits=limits)
+            except bik.InvalidInputError:
+                return None
+
+        expected, found = plan(nearest), plan(target, bik.tasks.Pose(first="position"))
+        assert (found is None) == (expected is None)
+        if found is not None:
+            planned += 1
+            end = HOBBY.fk(found.trajectory.at(found.trajectory.duration)[0])
+            np.testing.assert_allclose(end[:3, 3], target[:3, 3], atol=1e-6)
+    assert planned > 2
+
+
+def test_an_order_without_an_effect_is_refused() -> None:
+    task, pose = bik.tasks.Pose(first="position"), HOBBY.fk(np.zeros(HOBBY.dof))
+    with pytest.raises(bik.InvalidInputError, match="has no effect where all solutions are asked for"):
+        bik.solve_all(HOBBY, pose, task=task)
+    with pytest.raises(bik.InvalidInputError, match="has no effect along a path"):
+        bik.plan_along_path(HOBBY, [HOBBY.fk(np.zeros(HOBBY.dof)), HOBBY.fk(np.full(HOBBY.dof, 0.1))], task=task)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e", "iiwa14"])
+def test_an_unreachable_pose_is_approached_as_near_as_descents_come(name: str) -> None:
+    robot, rng = bik.Robot.named(name), np.random.default_rng(8)
+    worse = []
+    for _ in range(12):
+        start = rng.uniform(robot.lower, robot.upper) * 0.3
+        target = robot.fk(start)
+        target[:3, 3] *= 1.5 / np.linalg.norm(target[:3, 3])  # m
+        found = bik.solve(robot, target, start_q=start)
+        assert found.status == bik.Status.OUT_OF_REACH
+        descent = bik.solve(robot, target, start_q=start, solver=bik.LevenbergMarquardt())
+        worse.append(found.position_error / descent.position_error)
+    assert np.median(worse) < 1.1
+    assert max(worse) < 1.5

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trees_of_tips
 from mistakes import Invalid
 from move_programs import Turned, arc, draw, faults, line, moves_of, nothing, of_axis, of_vector
 
@@ -519,3 +520,26 @@ def test_a_huge_arm_keeps_the_speed_of_a_short_line_before_a_blend() -> None:
     before_blend = np.linalg.norm(tip - begin[:3, 3], axis=1) < 0.0079
     speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * 4000 / plan.moves[0].end
     assert speed[before_blend[1:]].max() == pytest.approx(0.01, rel=2e-4)
+
+
+def test_a_tip_rests_between_its_own_moves() -> None:
+    # Arms without a closed form, whose poses are met by a search up to its tolerance.
+    axes = ("0.1 0.2 1", "0.2 1 0.1", "0.3 1 -0.2", "1 0.1 0.2", "-0.2 1 0.3", "0.1 -0.1 1", "1 0.2 0.3")
+    joints = [(axis, (0.03, 0.02 * i, 0.15)) for i, axis in enumerate(axes)]
+    arms = [trees_of_tips.limb(tip, "floor", tip, joints, 2.0) for tip in ("left", "right")]
+    robot = bik.Robot.from_urdf(
+        f"<robot name='pair'><link name='floor'/>{''.join(arms)}</robot>", tip=["left", "right"]
+    )
+    own, rng = [robot.joint_names.index(f"left_{i}") for i in range(7)], np.random.default_rng(4)
+    for _ in range(5):
+        start = rng.uniform(-0.8, 0.8, robot.dof)
+        poses = robot.fk(start + rng.uniform(-0.2, 0.2, robot.dof))
+        program = [
+            Joints(poses[0], tip="left"),
+            Joints(poses[1], tip="right", name="other"),
+            Line(poses[0] @ bik.pose(rng.uniform(-0.02, 0.02, 3)), speed=0.05, tip="left"),
+        ]
+        plan = bik.plan_moves(robot, program, start_q=start, limits=LIMITS)
+        other = next(move for move in plan.moves if move.name == "other")
+        q = plan.trajectory.at(np.linspace(other.start, other.end, 50))[0]
+        assert np.ptp(q[:, own], axis=0).max() < 1e-9

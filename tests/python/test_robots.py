@@ -231,3 +231,17 @@ def test_pose_agrees_with_every_way_to_write_a_rotation() -> None:
 @pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-5, np.pi - 1e-9, np.pi, 7.0])
 def test_pose_by_rotation_vector_at_any_angle(angle: float) -> None:
     np.testing.assert_allclose(bik.pose([0, 0, 0], rotvec=[0, angle, 0]), rotation("y", angle), rtol=0, atol=1e-15)
+
+
+def test_a_follower_beyond_the_tip_limits_its_leader() -> None:
+    joint = (
+        "<joint name='{0}' type='revolute'><parent link='{1}'/><child link='{2}'/><origin xyz='0.3 0 0'/>"
+        "<axis xyz='0 0 1'/><limit lower='-{3}' upper='{3}' velocity='{4}' effort='1'/>{5}</joint><link name='{2}'/>"
+    )
+    follows = joint.format("finger", "hand", "nail", 0.1, 0.01, "<mimic joint='wrist' multiplier='0.5'/>")
+    wrist = joint.format("wrist", "base", "hand", 2, 1, "")
+    urdf = f"<robot name='arm'><link name='base'/>{wrist}{follows}</robot>"
+    for tip in ("hand", "nail"):
+        robot = bik.Robot.from_urdf(urdf, tip=tip)
+        np.testing.assert_allclose([robot.lower, robot.upper], [[-0.2], [0.2]])
+        np.testing.assert_allclose(robot.limits.velocity, [0.02])

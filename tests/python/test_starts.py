@@ -465,6 +465,37 @@ def test_wrap_names_a_joint_that_no_turn_brings_inside(call: Any, error: Any, me
     assert_told(call, error, message)
 
 
+def test_wrap_leaves_the_play_of_a_start() -> None:
+    """One joint is outside by its play, another by whole turns: the result is a start."""
+    reading = INSIDE.copy()
+    reading[3] = PANDA.upper[3] + 0.01
+    np.testing.assert_array_equal(PANDA.wrap(reading), reading)
+    turned = reading + np.array([2 * np.pi, 0, 0, 0, 0, 0, -4 * np.pi])
+    np.testing.assert_allclose(PANDA.wrap(turned), reading, atol=1e-12)
+    turned[3] += 2 * np.pi
+    np.testing.assert_allclose(PANDA.wrap(turned, near=INSIDE), reading, atol=1e-12)
+    start = PANDA.wrap(turned)
+    plan = bik.plan_point_to_point(PANDA, start_q=start, end_q=INSIDE, limits=LIMITS)
+    assert [outside[0] for outside in plan.start_outside] == ["panda_joint4"]
+    slides = roller("continuous", "prismatic")
+    np.testing.assert_array_equal(slides.wrap([7.0, 0.504])[1:], [0.504])
+    for values in ([0.0, 0.506], [0.0, -0.006]):
+        with pytest.raises(Limit, match="whole turns do not apply"):
+            slides.wrap(values)
+
+
+def test_a_start_that_is_turned_and_has_play_is_told_to_wrap() -> None:
+    reading = INSIDE.copy()
+    reading[0] = PANDA.upper[0] + 0.0027 + 2 * np.pi
+    with pytest.raises(Limit) as told:
+        bik.plan_point_to_point(PANDA, start_q=reading, end_q=INSIDE, limits=LIMITS)
+    assert f"{TURNED}, but for 0.002700 rad, from where a motion may begin" in str(told.value)
+    bik.plan_point_to_point(PANDA, start_q=PANDA.wrap(reading), end_q=INSIDE, limits=LIMITS)
+    with pytest.raises(Limit) as told:
+        bik.plan_point_to_point(PANDA, start_q=reading, end_q=INSIDE, limits=LIMITS, start_slack=0.001)
+    assert TURNED not in str(told.value)
+
+
 def test_a_controller_that_reports_0_to_360_degrees_is_usable() -> None:
     reading = np.radians([350.0, 340.0, 5.0, 250.0, 10.0, 100.0, 40.0])
     q = PANDA.wrap(reading)

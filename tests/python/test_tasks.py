@@ -53,6 +53,15 @@ def test_properties_say_what_was_given() -> None:
     assert isinstance(goals.Centring(), goals.Goal)
 
 
+@pytest.mark.parametrize("length", [1e-320, 1e-200, 1e200, 1e308])
+def test_an_axis_may_be_of_any_length(length: float) -> None:
+    axis = np.array([0.6, 0.0, 0.8])
+    expected = bik.solve(IIWA, POSE, start_q=Q, task=tasks.Pointing(axis=axis))
+    found = bik.solve(IIWA, POSE, start_q=Q, task=tasks.Pointing(axis=length * axis))
+    assert found.success
+    np.testing.assert_allclose(found.q, expected.q, atol=1e-5)
+
+
 def test_a_tool_may_do_part_of_a_pose() -> None:
     found = bik.solve(IIWA, POSE, task=tasks.Pointing(tool=TOOL))
     assert found.success, found.message

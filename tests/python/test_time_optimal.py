@@ -320,3 +320,11 @@ def test_saturation_is_drawn() -> None:
     limits = bik.Limits(velocity=velocity, acceleration=acceleration)
     figure = bik.plot.saturation(bik.time_optimal(q, limits), limits)
     assert [axes.get_ylabel() for axes in figure.axes] == ["share of velocity limit", "share of acceleration limit"]
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-16, 4e-16, 1e-13])
+def test_rows_that_differ_by_rounding_are_one(apart: float) -> None:
+    limits = bik.Limits(velocity=1.0, acceleration=1.0)
+    motion = bik.time_optimal([[0, 0], [1, 0], [1 + apart, 0], [2, 0]], limits)
+    assert motion.duration == pytest.approx(3.0, abs=1e-6)
+    assert (np.diff(motion.sample(0.01)[1][:, 0]) >= -1e-12).all()

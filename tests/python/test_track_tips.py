@@ -285,3 +285,19 @@ def test_wrong_targets_leave_the_tracker_as_it_was() -> None:
             tracker.step(wrong)  # type: ignore[arg-type]
     np.testing.assert_array_equal(tracker.q, q)
     assert tracker.time == time
+
+
+def test_a_refused_step_is_as_if_it_had_not_been() -> None:
+    def follow(refused: dict[object, object] | None, stamp: float | None = None) -> np.ndarray:
+        tip_limits = bik.Limits(acceleration=5.0, tip_speed=0.3)
+        tracker = bik.Tracker(PAIR, START.q, dt=0.02, limits=tip_limits)
+        for k in range(20):
+            tracker.step({"left_tool": NEAR.pose(0.02 * k)})
+        if refused is not None:
+            with pytest.raises(bik.InvalidInputError):
+                tracker.step(refused, stamp=stamp)  # type: ignore[arg-type]
+        return np.array([tracker.step(None).q for _ in range(20)])
+
+    expected = follow(None)
+    np.testing.assert_array_equal(follow({HANDS: TRAY}), expected)
+    np.testing.assert_array_equal(follow({"right_tool": NEAR.pose(0.4)}, stamp=9.0), expected)

@@ -194,3 +194,19 @@ def test_a_stop_of_thousands_of_turns_ends_when_it_says() -> None:
         step = tracker.step(None)
     assert step.q[0] > 1000.0
     assert step.qd[0] == 0.0
+
+
+@pytest.mark.parametrize("recover", [False, True])
+@pytest.mark.parametrize("angle", [1e-5, 5e-4, 1e-3])
+def test_an_arm_at_a_limit_near_its_target_says_what_holds_it(angle: float, recover: bool) -> None:
+    arm = bik.Robot.named("ur5e")
+    q = np.array([0.3, -1.2, 1.2, -1.5, -1.57, arm.upper[5]])
+    target = arm.fk(q) @ bik.pose([0.0, 0.0, 0.0], rpy=[0.0, 0.0, angle])
+    limits = bik.Limits(velocity=1.5, acceleration=5.0, jerk=50.0)
+    tracker = bik.Tracker(arm, q, dt=0.01, limits=limits, recover=recover)
+    for _ in range(400):
+        step = tracker.step(target)
+    assert step.status is bik.Status.CAPPED
+    assert step.message.startswith("joint 'wrist_3_joint', at its upper limit, holds the arm ")
+    assert "another configuration reaches the target" in step.message
+    assert np.abs(step.q - q).max() < 0.01, "no turn for so little"

@@ -105,6 +105,11 @@ def test_payloads_and_speeds_of_moves_in_millimetres_warn() -> None:
     limits = bik.Limits(acceleration=5.0)
     (speed,) = said(lambda: bik.plan_moves(PANDA, program, start_q=READY, limits=limits))
     assert speed.startswith("speed of move 1 is 50 m/s (no arm is as fast), which looks like")
+    far = PANDA.fk(READY)
+    far[:3, 3] *= 1000.0
+    for move in (bik.moves.Line(far), bik.moves.Joints(far)):
+        with pytest.raises(bik.InvalidInputError, match=r"move 0 cannot be reached.*; move 0: [xyz] is .*millimetres"):
+            bik.plan_moves(PANDA, [move], start_q=READY, limits=limits)
 
 
 def test_a_tracker_warns_once_of_its_targets() -> None:

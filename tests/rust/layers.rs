@@ -10,202 +10,27 @@ use imports::{SourceFile, Sources, code_of, paths};
 
 const FOUNDATION: &[&str] = &["message", "error", "interrupt", "rng", "math", "stored", "wording"];
 
-/// Modules that each module may use, besides itself and those of [`FOUNDATION`]. Solvers do not depend on robots, nor robots on
-/// solvers.
-const LAYERS: &[(&str, &[&str])] = &[
-    ("message", &[]),
-    ("error", &["message"]),
-    ("interrupt", &[]),
-    ("rng", &[]),
-    ("math", &[]),
-    ("stored", &[]),
-    ("wording", &[]),
-    ("kinematics", &[]),
-    ("dynamics", &["kinematics"]),
-    ("shape", &[]),
-    ("starts", &["kinematics"]),
-    ("closed_form", &["kinematics"]),
-    ("bodies", &["kinematics", "shape"]),
-    ("robot", &["kinematics", "dynamics", "starts", "closed_form", "shape", "bodies"]),
-    ("path", &[]),
-    ("trajectory", &[]),
-    ("objective", &[]),
-    ("limits", &["robot", "objective"]),
-    ("units", &["kinematics", "shape", "robot", "limits"]),
-    ("load", &["kinematics", "dynamics", "shape", "robot", "units"]),
-    ("motion", &["limits", "trajectory", "objective"]),
-    ("obstacle", &["kinematics", "robot", "objective", "shape", "bodies"]),
-    ("manipulability", &["kinematics", "robot"]),
-    ("calibration", &["robot", "obstacle"]),
-    ("task", &["kinematics", "dynamics", "robot", "obstacle", "manipulability", "objective"]),
-    ("constraint", &["kinematics", "dynamics", "robot", "trajectory", "objective", "limits", "obstacle", "task"]),
-    ("solver", &["objective"]),
-    ("problem", &["kinematics", "starts", "robot", "obstacle", "task", "limits", "objective"]),
-    ("minimize", &["objective", "solver"]),
-    (
-        "ik",
-        &[
-            "kinematics",
-            "closed_form",
-            "robot",
-            "objective",
-            "limits",
-            "obstacle",
-            "manipulability",
-            "task",
-            "solver",
-            "problem",
-        ],
-    ),
-    ("map", &["kinematics", "closed_form", "robot", "obstacle", "manipulability", "task", "solver", "ik"]),
-    (
-        "batch",
-        &["robot", "objective", "limits", "manipulability", "task", "solver", "problem", "ik", "planning", "map"],
-    ),
-    ("posture", &["robot", "objective", "manipulability", "task", "solver", "ik"]),
-    ("timing", &["robot", "trajectory", "limits", "constraint"]),
-    (
-        "plan",
-        &[
-            "robot",
-            "trajectory",
-            "objective",
-            "limits",
-            "obstacle",
-            "constraint",
-            "shape",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-        ],
-    ),
-    (
-        "free_path",
-        &[
-            "robot",
-            "trajectory",
-            "objective",
-            "limits",
-            "motion",
-            "obstacle",
-            "constraint",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-            "plan",
-        ],
-    ),
-    (
-        "approach_retreat",
-        &[
-            "robot",
-            "trajectory",
-            "objective",
-            "limits",
-            "obstacle",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-            "plan",
-            "free_path",
-        ],
-    ),
-    (
-        "along_path",
-        &[
-            "robot",
-            "path",
-            "trajectory",
-            "objective",
-            "limits",
-            "constraint",
-            "obstacle",
-            "task",
-            "solver",
-            "problem",
-            "ik",
-            "timing",
-            "plan",
-        ],
-    ),
-    (
-        "moves",
-        &[
-            "robot",
-            "trajectory",
-            "objective",
-            "limits",
-            "constraint",
-            "obstacle",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-            "plan",
-            "free_path",
-            "along_path",
-        ],
-    ),
-    (
-        "tpbso",
-        &[
-            "robot",
-            "path",
-            "trajectory",
-            "objective",
-            "obstacle",
-            "shape",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-            "plan",
-            "along_path",
-        ],
-    ),
-    (
-        "planning",
-        &[
-            "robot",
-            "limits",
-            "constraint",
-            "obstacle",
-            "task",
-            "solver",
-            "ik",
-            "timing",
-            "plan",
-            "free_path",
-            "approach_retreat",
-            "along_path",
-            "moves",
-            "tpbso",
-        ],
-    ),
-    (
-        "tracking",
-        &[
-            "kinematics",
-            "robot",
-            "path",
-            "trajectory",
-            "objective",
-            "limits",
-            "motion",
-            "obstacle",
-            "constraint",
-            "shape",
-            "manipulability",
-            "task",
-            "solver",
-            "problem",
-            "ik",
-        ],
-    ),
-];
+/// Row of the table in docs/architecture.md: a module, and those that it may use besides itself and [`FOUNDATION`].
+struct Layer {
+    module: String,
+    uses: Vec<String>,
+}
+
+/// Reads the table, from the lowest layer up.
+fn layers() -> Vec<Layer> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/architecture.md");
+    let page = std::fs::read_to_string(path).expect("docs/architecture.md");
+    let (_, table) = page.split_once("| module | may use | contains |\n").expect("the table of the layers");
+    let rows = table.lines().skip(1).take_while(|line| line.starts_with('|'));
+    rows.map(|row| {
+        let mut cells = row.split('|').skip(1).map(str::trim);
+        let mut cell = || cells.next().expect("a row with cells");
+        let module = cell().trim_matches('`').to_owned();
+        let uses = cell().split(", ").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+        Layer { module, uses }
+    })
+    .collect()
+}
 
 /// Name of a solver's progress type, which every solver declares.
 const STATE: &str = "State";
@@ -216,8 +41,27 @@ fn core() -> Sources {
 
 #[test]
 fn every_file_keeps_to_its_layer() {
-    let faults: Vec<String> = core().files().flat_map(faults_of).collect();
+    let layers = layers();
+    let faults: Vec<String> = core().files().flat_map(|file| faults_of(file, &layers)).collect();
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+}
+
+#[test]
+fn every_layer_uses_those_above_it_in_the_table_and_no_other() {
+    let (core, layers) = (core(), layers());
+    let mut above: Vec<&str> = vec![];
+    for Layer { module, uses } in &layers {
+        let used: BTreeSet<String> = core
+            .files()
+            .filter(|file| room_of(file) == *module)
+            .flat_map(|file| modules_used(&file.code).into_iter().map(|(_, used)| used))
+            .collect();
+        for name in uses {
+            assert!(above.contains(&name.as_str()), "'{module}' uses '{name}', which is not above it");
+            assert!(used.contains(name), "'{module}' does not use '{name}'");
+        }
+        above.push(module);
+    }
 }
 
 #[test]
@@ -231,11 +75,12 @@ fn files_import_one_another_in_no_circle() {
 
 #[test]
 fn tests_stand_in_the_rooms_of_the_core() {
+    let layers = layers();
     let tests = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/rust"));
     for file in tests.files() {
         let room = room_of(file);
         let known = ["main", "common", "interface", "layers", "plain_words", "repeatable"].contains(&&*room)
-            || LAYERS.iter().any(|(name, _)| *name == room);
+            || layers.iter().any(|layer| layer.module == room);
         assert!(known, "tests/rust/{}: the core has no room '{room}'", file.path.display());
     }
 }
@@ -310,14 +155,14 @@ fn circles_are_found_through_re_exports() {
 }
 
 /// Lines of `file` that violate its rule, each as `file:line: rule`.
-fn faults_of(file: &SourceFile) -> Vec<String> {
+fn faults_of(file: &SourceFile, layers: &[Layer]) -> Vec<String> {
     let place = file.path.display();
     let module = room_of(file);
     if module == "lib" {
         return Vec::new(); // its contents and re-exports
     }
-    let Some((_, allowed)) = LAYERS.iter().find(|(name, _)| *name == module) else {
-        return vec![format!("{place}: module '{module}' has no layer: add it to the table")];
+    let Some(Layer { uses: allowed, .. }) = layers.iter().find(|layer| layer.module == module) else {
+        return vec![format!("{place}: module '{module}' has no layer: add it to the table in docs/architecture.md")];
     };
     modules_used(&file.code)
         .into_iter()
@@ -325,7 +170,7 @@ fn faults_of(file: &SourceFile) -> Vec<String> {
             let used = used.as_str();
             let foundation = FOUNDATION.contains(&used)
                 && (["message", "error"].contains(&used) || !FOUNDATION.contains(&module.as_str()));
-            used != module && !foundation && !allowed.contains(&used)
+            used != module && !foundation && !allowed.iter().any(|name| name == used)
         })
         .map(|(line, used)| format!("{place}:{line}: '{module}' must not use '{used}'"))
         .collect()

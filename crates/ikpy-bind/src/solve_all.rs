@@ -72,7 +72,8 @@ outcome! {
 #[pymethods]
 impl PySolutionSet {
     /// Whether it is proven that no other solution exists inside the limits, whole turns aside; False after a search,
-    /// where `limit` or `separation` left solutions out, beside singular poses, and for tolerances above 1e-5.
+    /// where `limit` or `separation` left solutions out, beside singular poses, for tolerances above 1e-5, and with `turns` for
+    /// an arm with an unlimited joint.
     #[getter]
     fn complete(&self) -> bool {
         self.core.complete
@@ -193,7 +194,8 @@ impl Unreached {
 ///         a closed form are returned, those of a search differ by 0.1.
 ///     redundancy: number of parameter values at which a redundant arm with a closed form is solved, spread over the
 ///         range that its limits allow. 0: a search is used instead.
-///     turns: return each solution at all whole turns inside the limits; joints without limits are not turned.
+///     turns: return each solution at all whole turns inside the limits. A joint that is unlimited on a side has infinitely many: it
+///         stays at the nearest one, and `complete` is False.
 ///     task: part of the target that counts, one of `tasks`; None: all of it.
 ///     solver: the solver of a search; None: the closed form where there is one, and Levenberg-Marquardt from many starts elsewhere.
 ///     position_tolerance: largest position error (m).

@@ -27,6 +27,7 @@ pub fn spelt(setting: &Setting) -> String {
         Setting::AllTurns => "turns=True",
         Setting::RaiseInvalid => "use on_invalid=\"raise\"",
         Setting::Session => "Tracker",
+        Setting::Clock => "tracker.time",
         Setting::Ease => "ease=True",
         Setting::Recover => "recover=True",
         Setting::FreeStart => "free_start=True",

@@ -102,7 +102,7 @@ class RobotKinematics:
                 weights of zero.
         """
         start = self._entries.inside("current_joint_pos", current_joint_pos)
-        if position_weight is not self._given[0] or orientation_weight is not self._given[1]:
+        if (position_weight, orientation_weight) != self._given:
             self._weigh(position_weight, orientation_weight, start)
         near = self._nearby(start, desired_ee_pose)
         self.result = result = near if _suffices(near, start) else self._better(near, desired_ee_pose)

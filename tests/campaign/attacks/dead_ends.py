@@ -13,6 +13,7 @@ from ..attack import Attack, BrokenError, Case
 ARMS = ("panda", "iiwa14", "ur5e", "gen3", "ur10")
 TIME = 6.0  # s after the target is back
 ROUNDING = 1e-6  # relative, of differences of commands
+SINGULAR = 0.02  # smallest singular value relative to the largest
 
 # Leads the tip away and back, by the share of the way that the target has gone.
 LED = """
@@ -38,7 +39,7 @@ while settled * dt < 1.0 and tick * dt < end:
     step = tracker.step(target(tick * dt))
     settled = 0 if step.message.startswith("on the way") else settled + 1
     q.append(step.q)
-q, away = np.array(q), np.linalg.norm(robot.fk(step.q)[:3, 3] - home[:3, 3])
+q = np.array(q)
 """
 
 
@@ -82,11 +83,14 @@ class DeadEnds(Attack):
         )
 
     def judge(self, case: Case, left: dict[str, Any]) -> int:
-        q, robot = left["q"], left["robot"]
+        q, robot, dt = left["q"], left["robot"], case["dt"]
         values = np.linalg.svd(robot.jacobian(q[0]), compute_uv=False)
-        enlarged = 6.0 if values[-1] > 0.02 * values[0] else 20.0  # singular arms enlarge noise, as the page says
-        if left["away"] > 1e-3 + enlarged * case["noise"]:
-            raise BrokenError("the arm stays away from its target", {"away": left["away"], "said": left["said"][-1:]})
+        # Singular arms enlarge noise and stray for a moment, as the page says: those stay that mostly are, over 4 s.
+        enlarged, seconds = (6.0, dt) if values[-1] > SINGULAR * values[0] else (20.0, 4.0)
+        last = robot.fk(q[-max(round(seconds / dt), 1) :])[:, :3, 3]
+        away = np.median(np.linalg.norm(last - left["home"][:3, 3], axis=1))
+        if away > 1e-3 + enlarged * case["noise"]:
+            raise BrokenError("the arm stays away from its target", {"away": away, "said": left["said"][-1:]})
         if any(text.startswith("nearer than in the tick before") for text in left["said"]):
             raise BrokenError("an arm at rest is said to come nearer", left["said"])
         if np.any(q < robot.lower) or np.any(q > robot.upper):

@@ -288,7 +288,8 @@ fn most_poses_that_limits_exclude_are_proven_out_of_reach() {
                 let stop = Stop { max_evaluations: 1000, ..Stop::default() };
                 let searched = solved(&robot, &pose, &SolveOptions { stop, ..by_search() });
                 assert_ne!(searched.status, Status::Solved, "{}: {:?}", robot.name(), searched.q);
-                assert!(solution.evaluations < 20, "{}: {}", robot.name(), solution.evaluations);
+                // Two descents of eight end near the target.
+                assert!(solution.evaluations < 20 + 16, "{}: {}", robot.name(), solution.evaluations);
             }
         }
         assert!(missed > 50 && 20 * proven > 19 * missed, "{}: {proven} of {missed}", robot.name());

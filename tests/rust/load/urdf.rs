@@ -404,7 +404,7 @@ fn impossible_joints_are_named() {
             "type=\"floating\"",
             "line 5: joint 'a' is floating, \
              and a chain takes only revolute, continuous, prismatic, fixed and mimic joints: \
-             take base and tip on one side of it, such as base 'upper'",
+             take base and tip on one side of it, a base from 'upper' on or a tip up to 'base'",
         ),
         (
             "<origin xyz=\"0 0 1\"/>",

@@ -101,7 +101,7 @@ fn wrong_srdfs_say_what_is_wrong() {
     assert_eq!(
         message(&srdf("<disable_collisions link1='loer' link2='knee'/>")),
         format!(
-            "SRDF: it is for another robot: 'arm' has no two links that it disables, such as 'loer' (did you mean 'lower'?); \
+            "SRDF: it is for another robot: 'arm' has no link 'loer' (did you mean 'lower'?) and none of the pairs that it disables; \
              {links}"
         )
     );

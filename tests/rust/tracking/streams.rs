@@ -387,7 +387,9 @@ fn stamps_are_checked() {
     let stamped = |stamp: f64| Some(Arrival { stamp: Some(stamp), ..target.into() });
     let mut limited = session(&arm, moderate(&arm, 50.0), 0.01);
     let error = limited.advance(stamped(0.5), &mut Unattended).unwrap_err().to_string();
-    assert_eq!(error, "stamp must be at most 0.01, the end of the tick (s), got 0.5");
+    let clock = "the clock of the tracker (its time advances by dt in each step; leave stamp out, or give the time of \
+                 measurement on this clock)";
+    assert_eq!(error, format!("stamp must be at most 0.01, the end of the tick (s) on {clock}, got 0.5"));
     assert!(limited.advance(stamped(f64::NAN), &mut Unattended).is_err());
     limited.advance(stamped(0.005), &mut Unattended).unwrap();
     let mut free = session(&arm, limits(&arm, &[]), 0.01);

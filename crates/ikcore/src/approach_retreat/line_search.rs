@@ -2,7 +2,7 @@
 
 use super::straight_tip::{Hindrance, StraightTip};
 use crate::error::{Error, Result};
-use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve_all};
+use crate::ik::{AllOptions, SolutionSet, SolveOptions, solve, solve_all};
 use crate::limits::Limits;
 use crate::obstacle::{ClearSpace, ClearanceSweep, NearestContact};
 use crate::plan::{
@@ -114,13 +114,22 @@ impl LineSearch<'_> {
             limits: Some(self.position_limits.clone()),
             surroundings: space.map(|space| space.surroundings()).unwrap_or_default(),
             seed: self.options.seed,
+            whole_only: true,
             ..SolveOptions::default()
         };
-        let all = AllOptions { each, limit: Some(TRIED), redundancy: REDUNDANCY, ..AllOptions::default() };
+        let all =
+            AllOptions { each: each.clone(), limit: Some(TRIED), redundancy: REDUNDANCY, ..AllOptions::default() };
         let robot = space.map_or(self.tip.bare_robot(), |space| space.robot());
         let set = solve_all(robot, target, &all, monitor)?;
         self.evaluations += set.evaluations;
         if set.solutions.is_empty() {
+            if self.options.task.is_some_and(|task| task.first.is_some()) {
+                let in_order = solve(robot, target, &SolveOptions { whole_only: false, ..each }, monitor)?;
+                self.evaluations += in_order.evaluations;
+                if in_order.status.is_given_up() {
+                    return Ok(vec![in_order.q.to_vec()]);
+                }
+            }
             return Err(Error::Unreachable { what: name.of_target(), problem: why_none(&set).into() });
         }
         Ok(set.solutions.iter().map(|solution| solution.q.to_vec()).collect())

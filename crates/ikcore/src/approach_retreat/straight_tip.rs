@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
 use crate::math::so3::norm;
 use crate::math::vector::{distance, largest_difference};
+use crate::math::vector3::direction;
 use crate::objective::Linearization;
 use crate::plan::configuration_at;
 use crate::robot::Robot;
@@ -114,9 +115,7 @@ impl<'a> StraightTip<'a> {
         }
         match self.task.map(|task| task.kind) {
             Some(TaskKind::Position) => Target::Position(frame.origin),
-            Some(TaskKind::Pointing { axis }) => {
-                Target::Pointing { frame, axis: axis.map(|entry| entry / norm(&axis)) }
-            }
+            Some(TaskKind::Pointing { axis }) => Target::Pointing { frame, axis: direction(&axis) },
             _ => Target::Pose(frame),
         }
     }

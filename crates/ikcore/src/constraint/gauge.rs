@@ -177,7 +177,12 @@ impl Gauge {
         let (named, unit) = (self.named(), self.unit());
         match self.kind {
             Kind::Face { .. } => format!("{named}: {} {unit}", number(value)),
-            _ => format!("{named} {} {unit} of at most {}", number(value), number(self.tolerance)),
+            _ => {
+                let (shown, most) = (number(value), number(self.tolerance));
+                let by =
+                    if shown == most { format!(", more by {:.1e}", value - self.tolerance) } else { String::new() };
+                format!("{named} {shown} {unit} of at most {most}{by}")
+            }
         }
     }
 

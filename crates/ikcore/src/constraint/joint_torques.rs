@@ -260,7 +260,8 @@ impl JointTorques {
     pub fn beyond(&self, torques: &[f64]) -> Option<TooHeavy> {
         let found = |(joint, (torque, limit)): (usize, (&f64, &f64))| {
             let friction = self.friction(joint).dry;
-            let is_beyond = torque.abs() + friction > limit * (1.0 - TIGHT);
+            // NaN, the sum of infinite torques, is beyond any limit.
+            let is_beyond = !(torque.abs() + friction <= limit * (1.0 - TIGHT));
             is_beyond.then_some(TooHeavy { joint, torque: torque.abs(), friction, limit: *limit })
         };
         let share = |found: &TooHeavy| (found.torque + found.friction) / found.limit;

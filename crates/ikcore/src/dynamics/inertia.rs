@@ -16,6 +16,9 @@ pub struct Inertia {
     pub matrix: [[f64; 3]; 3],
 }
 
+/// Largest entry (kg, m, kg m²): products of such entries with rates are finite.
+const LARGEST: f64 = 1e50;
+
 /// Rounding of an inertia matrix, relative to its largest entry: files have three to six digits.
 const ROUNDING: f64 = 1e-3;
 /// Moment of inertia that counts as none (kg m^2): that of a gram at a millimetre.
@@ -52,6 +55,9 @@ impl Inertia {
         let flat = matrix.as_flattened();
         if let Some(value) = std::iter::once(mass).chain(center).chain(flat).find(|value| !value.is_finite()) {
             return Some(format!("mass, centre and inertia matrix must be finite, got {value}"));
+        }
+        if let Some(value) = std::iter::once(mass).chain(center).chain(flat).find(|value| value.abs() > LARGEST) {
+            return Some(format!("mass, centre and inertia matrix must be at most {LARGEST:e}, got {value:e}"));
         }
         if *mass < 0.0 {
             return Some(format!("the mass is {mass} kg: it cannot be negative"));

@@ -111,7 +111,7 @@ pub(super) fn plan(
             let plan = Plan { status, ..search.plan(trajectory, options.objective) };
             let mut plan = with_least_clearance(plan, &mut sweep, margin)?;
             let broken = plan.note_kept(robot, &options.keeps)?;
-            if plan.status == Status::Solved && broken.is_some() {
+            if plan.status == Status::Stalled && broken.is_some() {
                 plan.status = status;
             }
             let (obstruction, own_points) =

@@ -4,7 +4,7 @@
 use super::end_pair::EndPair;
 use super::pair_search::PairSearch;
 use crate::error::Result;
-use crate::ik::{AllOptions, bring_near, solve_all};
+use crate::ik::{AllOptions, SolveOptions, bring_near, solve_all};
 use crate::objective::{Bounds, Point};
 use crate::plan::Endpoint;
 use crate::solver::Monitor;
@@ -45,7 +45,7 @@ impl PairSearch<'_> {
             Endpoint::Configuration(q) => return Ok(vec![q.as_slice().into()]),
             Endpoint::Targets { targets, .. } => &targets[0],
         };
-        let each = self.solve_options();
+        let each = SolveOptions { whole_only: true, ..self.solve_options() };
         let options = AllOptions { each, limit: Some(BRANCHES), redundancy: 0, ..AllOptions::default() };
         let found = solve_all(self.robot, target, &options, monitor)?;
         self.evaluations += found.evaluations;

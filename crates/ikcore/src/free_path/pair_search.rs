@@ -270,7 +270,7 @@ impl<'a> PairSearch<'a> {
     /// Whether an end with this status is taken: one that gives up a part does so only by the caller's own order.
     fn takes(&self, status: Status) -> bool {
         let is_ordered = self.task.is_some_and(|task| task.first.is_some());
-        status == Status::Solved || is_ordered && matches!(status, Status::RotationGivenUp | Status::PositionGivenUp)
+        status == Status::Solved || is_ordered && status.is_given_up()
     }
 
     fn solve(&mut self, target: &Target, start: Option<Vec<f64>>, monitor: &mut dyn Monitor) -> Result<Solution> {

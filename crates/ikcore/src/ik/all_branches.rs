@@ -307,7 +307,7 @@ impl BranchCollector<'_, '_, '_> {
     /// reach, or just outside the poses that an arm with few joints can reach.
     #[cold]
     fn take_within_tolerance(&mut self) {
-        let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES);
+        let q = self.attempt.approach(&self.descent, self.turns.reference(), APPROACHES, usize::MAX);
         if !self.attempt.problem.assess(&q).score.solved {
             return;
         }

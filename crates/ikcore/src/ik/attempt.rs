@@ -10,7 +10,7 @@ use crate::objective::{Bounds, Differentiable, Objective, Point};
 use crate::problem::Problem;
 use crate::rng::LazyRng;
 use crate::solver::{Evaluator, LevenbergMarquardt, Monitor, MultiStart, RestartRule, Status, Stop, Stopwatch, run};
-use crate::task::{Aims, Assessment, Criterion, Goals, Target, TipError, Tolerance};
+use crate::task::{Aims, Assessment, Components, Criterion, Goals, Target, TipError, Tolerance};
 
 /// Number of starts of the approach to a target out of reach.
 pub(super) const APPROACHES: usize = 8;
@@ -72,7 +72,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
             return self.explained(status, q);
         };
         if self.problem.reach_shortfall(bounds).is_some() {
-            let q = self.approach(&descent, x0, APPROACHES);
+            let q = self.approach(&descent, x0, APPROACHES, usize::MAX);
             return self.explained(Status::OutOfReach, q);
         }
         let (status, q) = self.search(bounds, x0, self.budget.reserve());
@@ -134,6 +134,23 @@ impl<'m, 'p> Attempt<'m, 'p> {
         (status, Point::from_slice(&evaluator.best().x))
     }
 
+    /// Runs a single start from `x0`, by the weights of the joints, to a target itself whose tolerances are a band. Returns its end if it
+    /// meets the target.
+    pub fn search_once_without_band(&mut self, x0: &[f64]) -> Option<Point> {
+        let (target, criterion) = self.problem.only_target().filter(|(_, criterion)| criterion.has_band())?;
+        let components = criterion.components.map(|components| Components { tolerance: None, ..components });
+        let exact = Criterion { components, tolerance: Tolerance::default(), ..*criterion }.into();
+        let MultiStart { solver, rule } = self.context.solver().restarted_descent()?;
+        let once = MultiStart { solver, rule: RestartRule { max_starts: 1, ..rule } };
+        let mut problem = Problem::new(self.context.robot(), Aims::of_one(&exact, target));
+        let objective: &mut dyn Differentiable = &mut problem;
+        let bounds = self.context.weighted_bounds();
+        let mut evaluator = Evaluator::new(objective, bounds, self.budget.rest(0), self.rng, self.monitor);
+        let status = run(&once, &mut evaluator, x0);
+        self.budget.add(&evaluator);
+        (status == Status::Solved).then(|| Point::from_slice(&evaluator.best().x))
+    }
+
     /// Builds the solution of a search that ended with `status` at `q`. After a miss, descends from `q` first.
     pub fn finish(&mut self, descent: &LevenbergMarquardt, status: Status, q: Point) -> Solution {
         if !matches!(status, Status::BudgetSpent | Status::Stalled) {
@@ -178,8 +195,14 @@ impl<'m, 'p> Attempt<'m, 'p> {
         Point::from_slice(&evaluator.best().x)
     }
 
-    /// Returns the best of `approaches` descents towards a target that cannot be reached.
-    pub fn approach(&mut self, descent: &LevenbergMarquardt, x0: &[f64], approaches: usize) -> Point {
+    /// Returns the best of `approaches` descents towards a target that cannot be reached, each of at most this many `evaluations`.
+    pub fn approach(
+        &mut self,
+        descent: &LevenbergMarquardt,
+        x0: &[f64],
+        approaches: usize,
+        evaluations: usize,
+    ) -> Point {
         let mut best: Option<(f64, Point)> = None;
         let mut x = Point::from_slice(x0);
         for approach in 0..approaches {
@@ -187,7 +210,7 @@ impl<'m, 'p> Attempt<'m, 'p> {
                 self.next_start(&mut x);
                 self.budget.restarts += 1;
             }
-            let (_, q) = self.descend(descent, x.clone());
+            let (_, q) = self.descend_some(descent, x.clone(), evaluations);
             let value = self.problem.assess(&q).score.value;
             if best.as_ref().is_none_or(|(least, _)| value < *least) {
                 best = Some((value, q));
@@ -197,9 +220,9 @@ impl<'m, 'p> Attempt<'m, 'p> {
     }
 
     /// Approaches a target that cannot be reached, and returns the result.
-    pub fn approached(&mut self, x0: &[f64], approaches: usize) -> Solution {
+    pub fn approached(&mut self, x0: &[f64], approaches: usize, evaluations: usize) -> Solution {
         let descent = self.context.solver().restarted_descent().map_or_else(Default::default, |multi| multi.solver);
-        let q = self.approach(&descent, x0, approaches);
+        let q = self.approach(&descent, x0, approaches, evaluations);
         self.explained(Status::OutOfReach, q)
     }
 

@@ -17,7 +17,11 @@ pub(super) fn cheapest_nearby(attempt: &mut Attempt<'_, '_>, start: &[f64], solu
     }
     let mut goals = context.distance_from(start);
     let mut best = moved(attempt, &mut goals, start, solution.q);
-    if let (Status::Solved, q) = attempt.search_once_within(context.bounds(), start) {
+    let without_weights = match attempt.search_once_within(context.bounds(), start) {
+        (Status::Solved, q) => Some(q),
+        _ => None,
+    };
+    for q in without_weights.into_iter().chain(attempt.search_once_without_band(start)) {
         let other = moved(attempt, &mut goals, start, q);
         if other.0 < best.0 {
             best = other;

@@ -187,6 +187,13 @@ impl<'a> SolveContext<'a> {
     /// # Errors
     /// [`Error::Contradiction`].
     pub(super) fn require_one_level(&self) -> Result<()> {
+        if let Some(first) = self.tasks.iter().find_map(|task| task.first).filter(|_| !self.options.whole_only) {
+            let problem = message![
+                Setting::First(first.name()),
+                " has no effect where all solutions are asked for, which meet the whole pose: solve for one configuration"
+            ];
+            return Err(Error::Contradiction { problem });
+        }
         let level = |task: &CheckedTask| task.level;
         let (lowest, highest) = (self.tasks.iter().map(level).min(), self.tasks.iter().map(level).max());
         if lowest == highest {

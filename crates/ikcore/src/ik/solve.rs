@@ -116,7 +116,20 @@ fn is_missed(status: Status) -> bool {
 /// Returns the solution of a pose that cannot be met as a whole, if that is known at once.
 fn without_whole_pose(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
     let found = ranked_at_once(attempt, start).or_else(|| by_levels_at_once(attempt, start));
-    found.filter(|found| found.status != Status::Solved)
+    found.or_else(|| by_order_at_once(attempt, start)).filter(|found| found.status != Status::Solved)
+}
+
+/// Returns the solution of a pose of which one part comes first, where a search does not meet the whole pose: then no solutions are left to
+/// prefer one of.
+#[cold]
+fn by_order_at_once(attempt: &mut Attempt<'_, '_>, start: Option<&[f64]>) -> Option<Solution> {
+    let (target, _) = attempt.problem.only_target()?;
+    if attempt.context.options().prefer == Prefer::Any || attempt.context.comes_first(target).is_none() {
+        return None;
+    }
+    let whole = first_solution(attempt, start);
+    let found = is_missed(whole.status).then(|| ranked_solution(attempt, whole, start))?;
+    (!is_missed(found.status)).then_some(found)
 }
 
 /// Returns the solution by levels, if a brief search does not meet all targets.

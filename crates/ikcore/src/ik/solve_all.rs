@@ -11,7 +11,7 @@ use super::context::SolveContext;
 use super::solution::{Nearest, Solution, SolveReport};
 use super::solutions::{SolutionView, Solutions};
 use super::solve_options::SolveOptions;
-use super::whole_turns::{all_turns, bring_near, count_of_turns};
+use super::whole_turns::{all_turns, bring_near, count_of_turns, has_endless_turns};
 use crate::error::{Error, Result, require_at_least_one, require_positive};
 use crate::message::{Message, Setting, message};
 use crate::objective::{Bounds, Point};
@@ -44,7 +44,8 @@ pub struct AllOptions {
     /// Number of parameter values at which a redundant arm with a closed form is solved, spread over those that its limits
     /// allow. 0 means a search.
     pub redundancy: usize,
-    /// Whether to return each solution at all whole turns inside the limits.
+    /// Whether to return each solution at all whole turns inside the limits. A joint that is unlimited on a side has endlessly
+    /// many: it stays at the nearest one, and the set is not complete.
     pub turns: bool,
 }
 
@@ -65,7 +66,7 @@ pub struct SolutionSet {
     pub obstruction: Option<String>,
     /// Best miss of a search that found no solution.
     pub miss: Option<Box<Solution>>,
-    /// Whether there is provably no other solution inside the limits, whole turns aside.
+    /// Whether there is provably no other solution inside the limits, whole turns aside unless all of them were asked for.
     pub complete: bool,
     /// Whether the pose is singular: a solution represents a family in which a joint is free.
     pub singular: bool,
@@ -87,7 +88,9 @@ impl SolutionSet {
         match (&self.obstruction, &self.miss) {
             (Some(_), _) => Status::OutOfReach,
             (None, Some(miss)) => miss.status,
-            (None, None) => Status::Solved,
+            (None, None) if !self.solutions.is_empty() => Status::Solved,
+            (None, None) if self.interrupted => Status::Interrupted,
+            (None, None) => Status::InCollision,
         }
     }
 
@@ -98,6 +101,7 @@ impl SolutionSet {
         }
         let count = match (self.solutions.len(), &self.miss) {
             (0, Some(miss)) => return message!["no solution; best miss: ", miss.message()],
+            (0, None) => return message!["no solution: ", self.status().advice()],
             (1, _) => "1 solution".into(),
             (count, _) => format!("{count} distinct solutions"),
         };
@@ -194,6 +198,8 @@ pub fn solve_all_tips(
     }
     if *turns {
         found.solutions = at_all_turns(&context, &found.solutions)?;
+        let is_endless = has_endless_turns(context.robot(), context.bounds());
+        found.complete &= !is_endless || found.solutions.is_empty();
     }
     if let Some(start) = start {
         found.solutions.sort_by_distance(start);
@@ -246,7 +252,7 @@ pub fn nearest_miss(
     let mut attempt = Attempt::new(&context, &mut problem, &mut rng, monitor);
     let start = options.each.start.as_deref().map(|q| context.hint(q)).transpose()?;
     let reference = start.as_deref().map_or_else(|| middle(context.robot(), context.bounds()), Point::from_slice);
-    Ok(attempt.approached(&reference, APPROACHES))
+    Ok(attempt.approached(&reference, APPROACHES, usize::MAX))
 }
 
 /// Result of the closed form, with solutions at least `separation` apart.
@@ -348,4 +354,17 @@ fn is_known(robot: &Robot, solutions: &Solutions, q: &[f64], separation: f64) ->
         robot.turn_period(j).map_or(difference, |turn| difference - turn * (difference / turn).round())
     };
     solutions.iter().any(|other| (0..q.len()).all(|j| apart(j, other.q).abs() < separation))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_without_solutions_says_why() {
+        let set = |interrupted| SolutionSet { interrupted, ..SolutionSet::of(Solutions::new(1)) };
+        assert_eq!(set(true).status(), Status::Interrupted);
+        assert_eq!(set(false).status(), Status::InCollision);
+        assert!(set(false).message().to_string().starts_with("no solution: move the target"));
+    }
 }

@@ -81,6 +81,13 @@ impl NearestTurn {
     }
 }
 
+/// Whether a joint may turn on for ever, so that [`all_turns`] cannot return all whole turns.
+pub(super) fn has_endless_turns(robot: &Robot, bounds: &Bounds) -> bool {
+    let is_open = |(lower, upper): (f64, f64)| lower == f64::NEG_INFINITY || upper == f64::INFINITY;
+    let sides = bounds.lower().iter().copied().zip(bounds.upper().iter().copied());
+    sides.enumerate().any(|(j, sides)| robot.turn_period(j).is_some() && is_open(sides))
+}
+
 /// Returns all configurations inside the limits that differ from `q` by whole turns, `q` first. Joints without limits stay.
 pub(super) fn all_turns(robot: &Robot, bounds: &Bounds, q: &[f64]) -> Vec<Point> {
     let mut all = vec![Point::from_slice(q)];

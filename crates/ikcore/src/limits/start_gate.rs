@@ -10,13 +10,8 @@ use super::joint_limits::Limits;
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
 use crate::message::{Message, Setting, message};
-use crate::robot::{JointKind, Robot, limit_rounding, outside_limits, position_unit, way_inside};
+use crate::robot::{JointKind, Robot, limit_rounding, outside_limits, play, position_unit, way_inside};
 use crate::wording::number;
-
-/// Slack of joints that turn: 5 degrees, the calibration of a hobby servo (rad).
-const TURNING: f64 = 5.0 * std::f64::consts::PI / 180.0;
-/// Slack of joints that slide (m).
-const SLIDING: f64 = 5e-3;
 
 /// Distance beyond a position limit up to which a start is taken and led inside (rad, m): one number for all joints, or one per joint.
 /// `None` means 5 degrees, or 5 mm for joints that slide.
@@ -50,8 +45,7 @@ impl StartSlack {
     /// Slack of joint `j` (rad, m).
     fn of(&self, j: usize, kind: Option<JointKind>) -> f64 {
         match &self.0 {
-            None if kind.is_none_or(JointKind::turns) => TURNING,
-            None => SLIDING,
+            None => play(kind),
             Some(given) => *given.get(j).or(given.first()).unwrap_or(&0.0),
         }
     }
@@ -153,7 +147,7 @@ impl Limits {
             } else if beyond <= slack.of(j, kind) + rounding {
                 admitted.outside.push(JointOutside::new(joint.to_owned(), kind, *value, limit));
             } else {
-                let remedy = remedy(robot, j, *value, [lower, upper], *slack != StartSlack::NONE);
+                let remedy = remedy(robot, j, *value, [lower, upper], slack);
                 return Err(outside_limits(what, (joint, kind), *value, [lower, upper], remedy));
             }
         }
@@ -181,11 +175,19 @@ impl Limits {
 }
 
 /// Advice for a joint outside its limits: whole turns where they help, else the nearest limit and, for a start, more slack.
-fn remedy(robot: Option<&Robot>, j: usize, value: f64, limits: [f64; 2], is_start: bool) -> Message {
-    if robot.is_some_and(|robot| robot.turned_inside(j, value, None, limits).is_some()) {
-        return Setting::Wrap.into();
-    }
+fn remedy(robot: Option<&Robot>, j: usize, value: f64, limits: [f64; 2], slack: &StartSlack) -> Message {
     let kind = robot.map(|robot| robot.joints()[j].kind);
+    if let Some(turned) = robot.and_then(|robot| robot.turned_near(j, value, None, limits)) {
+        let beyond = (limits[0] - turned).max(turned - limits[1]);
+        if beyond <= 0.0 {
+            return Setting::Wrap.into();
+        }
+        if beyond <= slack.of(j, kind) {
+            let play = format!(", but for {} {}, from where a motion may begin", number(beyond), position_unit(kind));
+            return message![Setting::Wrap, play];
+        }
+    }
+    let is_start = *slack != StartSlack::NONE;
     match way_inside(kind, (limits[0] - value).max(value - limits[1])) {
         near if is_start && near == message![Setting::Clip] => {
             message![near, "; ", Setting::StartSlack, " takes a start farther out"]

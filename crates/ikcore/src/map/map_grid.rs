@@ -8,7 +8,7 @@ use super::voxel_grid::VoxelGrid;
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::kinematics::Reach;
 use crate::math::Frame;
-use crate::math::so3::norm;
+use crate::math::vector3::direction;
 use crate::message::{Setting, message};
 use crate::robot::Robot;
 use crate::task::{Task, TaskKind};
@@ -139,8 +139,7 @@ fn orientations(robot: &Robot, reach: &Reach, layout: &MapLayout, task: Option<&
     let (moves, needs, set) = match (kind, reach.fixed_direction) {
         (TaskKind::Position, _) => (rank.position, 3 - plane, OrientationSet::single()),
         (TaskKind::Pointing { axis }, _) => {
-            let unit = axis.map(|entry| entry / norm(&axis));
-            (rank.pose, 5, OrientationSet::spread(layout.directions, 1, unit))
+            (rank.pose, 5, OrientationSet::spread(layout.directions, 1, direction(&axis)))
         }
         (_, Some(fixed)) => (rank.pose, 4 - plane, OrientationSet::fixed(layout.rolls, fixed.base, fixed.tip)),
         (_, None) => (rank.pose, 6, OrientationSet::spread(layout.directions, layout.rolls, [0.0, 0.0, 1.0])),

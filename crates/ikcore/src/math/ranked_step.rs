@@ -336,13 +336,13 @@ fn removed(unit: &[f64], from: &mut [f64]) -> f64 {
 fn downhill<const N: usize>(matrix: &[[f64; N]; N], right: &[f64; N], m: usize) -> [f64; N] {
     let rows = || matrix[..m].iter().flat_map(|row| &row[..m]);
     let largest = rows().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+    if largest == 0.0 || !rows().all(|entry| entry.is_finite()) {
+        return [0.0; N];
+    }
     let mut shift = 0.0;
     loop {
         if let Some(solved) = cholesky(matrix, shift, FLAT * largest, right, m) {
             return solved;
-        }
-        if largest == 0.0 || !largest.is_finite() {
-            return [0.0; N];
         }
         shift = if shift == 0.0 { 0.1 * largest } else { 4.0 * shift };
     }
@@ -402,6 +402,12 @@ mod tests {
             (0..n).for_each(|j| model.hessian[i * n + j] = hessian[(i, j)]);
         }
         (columns, model)
+    }
+
+    #[test]
+    fn a_matrix_with_nan_beside_numbers_leads_nowhere() {
+        let matrix = [[1.0, f64::NAN], [f64::NAN, 1.0]];
+        assert_eq!(downhill(&matrix, &[1.0, 1.0], 2), [0.0; 2]);
     }
 
     proptest! {

@@ -34,6 +34,13 @@ pub fn unit(v: &Vector) -> Vector {
     scaled(v, 1.0 / norm(v))
 }
 
+/// Returns v / |v| of a vector of any size, near the largest or the smallest numbers too; NaN for the zero vector.
+pub fn direction(v: &Vector) -> Vector {
+    let largest = v.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    let near_one = v.map(|entry| entry / largest);
+    near_one.map(|entry| entry / norm(&near_one))
+}
+
 /// Returns a unit vector perpendicular to the unit vector `axis`.
 pub fn perpendicular(axis: &Vector) -> Vector {
     let helper = if axis[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };

@@ -38,6 +38,8 @@ pub enum Setting {
     RaiseInvalid,
     /// Tracker that is stepped by its caller.
     Session,
+    /// Time of a tracker.
+    Clock,
     /// Approach from rest to a moving path.
     Ease,
     /// Way back of a tracked arm to a configuration on its target.
@@ -117,6 +119,7 @@ impl fmt::Display for Setting {
             Self::AllTurns => "taking all whole turns",
             Self::RaiseInvalid => "make invalid items an error",
             Self::Session => "Session",
+            Self::Clock => "its time",
             Self::Ease => "an eased start",
             Self::Recover => "recovery",
             Self::FreeStart => "free_start",

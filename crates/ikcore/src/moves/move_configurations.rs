@@ -43,22 +43,33 @@ impl MoveConfigurations<'_, '_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Result<Vec<Point>, Message>> {
         let (seen, own) = (self.tip.seen(pose, reference), self.tip.own(reference));
-        if self.tip.task.is_whole() {
-            let found = self.of_whole_pose(&seen, &own, monitor)?;
-            return Ok(found.map(|found| self.wholes(&found, reference)));
-        }
-        let found = match self.of_part(&seen, &own, monitor)? {
-            Ok(found) => found,
+        let is_whole = self.tip.task.is_whole();
+        let found =
+            if is_whole { self.of_whole_pose(&seen, &own, monitor) } else { self.of_part(&seen, &own, monitor) };
+        let mut found = match found? {
+            Ok(found) => self.wholes(&found, reference),
             Err(why) => return Ok(Err(why)),
         };
-        let mut found = self.wholes(&found, reference);
-        // A search ends within its tolerance, and a path begins on its pose.
+        // A search ends within its tolerance, and a path begins on its pose: after the moves of other tips, this one is still there.
         let place = Frame::from(pose);
-        found.retain_mut(|q| self.follower.meet(&place, q));
+        found.retain_mut(|q| self.meet(&place, q) || is_whole);
+        if is_whole {
+            return Ok(Ok(found));
+        }
         found.sort_by(|one, other| squared_distance(one, reference).total_cmp(&squared_distance(other, reference)));
         found.dedup_by(|one, other| largest_difference(one, other) < SAME);
         let none = "the search ended near the pose, but no configuration inside the limits meets it";
         Ok(if found.is_empty() { Err(none.into()) } else { Ok(found) })
+    }
+
+    /// Moves `q` to the nearest configuration that meets the task at `place`, if there is one. Returns whether there is.
+    fn meet(&mut self, place: &Frame, q: &mut Point) -> bool {
+        let mut nearest = q.clone();
+        let is_met = self.follower.meet(place, &mut nearest);
+        if is_met {
+            *q = nearest;
+        }
+        is_met
     }
 
     /// Configurations of the whole robot, with all joints but the tip's own at `reference`.

@@ -63,9 +63,7 @@ impl ProgramPlanner<'_> {
             evaluations: ladder.evaluations,
             ..Plan::of(trajectory, Cost::Time, duration)
         };
-        if plan.note_kept(around.robot, &options.keeps)?.is_some() {
-            plan.status = Status::Stalled;
-        }
+        plan.note_kept(around.robot, &options.keeps)?;
         Ok(plan)
     }
 

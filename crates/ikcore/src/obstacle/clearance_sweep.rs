@@ -33,6 +33,9 @@ const ALL: u32 = 0xff;
 /// Parts are not divided more often.
 const MOST_DIVISIONS: usize = 24;
 
+/// Intervals in which the smallest distance is looked for are not halved more often: time rounds to no less.
+const MOST_HALVINGS: usize = 52;
+
 /// Checks motions in a scene; owns its scratch.
 #[derive(Debug)]
 pub struct ClearanceSweep<'a> {
@@ -181,12 +184,19 @@ impl<'a> ClearanceSweep<'a> {
                 best.offer(self.scene.distance(pair, &self.poses, best.seen), t, pair);
             }
         }
-        self.narrow(motion, [from, to], &mut best, self.pending.len());
+        self.narrow(motion, ([from, to], MOST_HALVINGS), &mut best, self.pending.len());
         let contact = self.scene.contact(best.pair, best.proven.min(best.seen));
         Some(TooNear { at: best.at, contact })
     }
 
-    fn narrow(&mut self, motion: &impl JointMotion, [from, to]: [f64; 2], best: &mut Best, count: usize) {
+    /// Narrows down where the first `count` pending pairs come nearest, in an interval that may be halved so often.
+    fn narrow(
+        &mut self,
+        motion: &impl JointMotion,
+        ([from, to], halvings): ([f64; 2], usize),
+        best: &mut Best,
+        count: usize,
+    ) {
         let reach = self.pose(motion, from, to);
         let middle = 0.5 * (from + to);
         let mut left = 0;
@@ -196,7 +206,7 @@ impl<'a> ClearanceSweep<'a> {
             let distance = self.scene.distance(pair, &self.poses, best.seen + change);
             best.offer(distance, middle, pair);
             let bound = distance - change;
-            if bound >= best.seen - best.slack() {
+            if halvings == 0 || bound >= best.seen - best.slack() {
                 best.proven = best.proven.min(bound);
             } else {
                 self.pending.swap(i, left);
@@ -204,8 +214,8 @@ impl<'a> ClearanceSweep<'a> {
             }
         }
         if left > 0 {
-            self.narrow(motion, [from, middle], best, left);
-            self.narrow(motion, [middle, to], best, left);
+            self.narrow(motion, ([from, middle], halvings - 1), best, left);
+            self.narrow(motion, ([middle, to], halvings - 1), best, left);
         }
     }
 

@@ -5,6 +5,7 @@ use super::plan::Plan;
 use crate::constraint::{Keep, KeepSweep};
 use crate::error::Result;
 use crate::robot::Robot;
+use crate::solver::Status;
 use crate::timing::Violation;
 use crate::trajectory::Trajectory;
 
@@ -24,7 +25,7 @@ pub(crate) fn broken_along(robot: &Robot, keeps: &[Keep], motion: &Trajectory) -
 
 impl Plan {
     /// Certifies that `keeps` hold along the whole motion, unless that was done. Adds the violation where one is broken, and returns it in
-    /// words: then the plan has not succeeded.
+    /// words: then the plan has not succeeded, whoever asks.
     ///
     /// # Errors
     /// None in practice: the joints are those of the robot.
@@ -39,6 +40,9 @@ impl Plan {
         let Some(violation) = broken_along(robot, keeps, &self.trajectory)? else { return Ok(None) };
         let said = violation.to_string();
         self.violations.push(violation);
+        if self.status == Status::Solved {
+            self.status = Status::Stalled;
+        }
         Ok(Some(said))
     }
 

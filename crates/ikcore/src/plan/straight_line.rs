@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, require_finite, require_positive};
 use crate::math::Frame;
-use crate::math::so3::norm;
+use crate::math::vector3::{direction, scaled};
 use crate::obstacle::{Obstacle, Obstacles};
 use crate::wording::words;
 
@@ -49,7 +49,7 @@ impl StraightLine {
         require_positive(&format!("distance of {what}"), self.distance)?;
         let Some(direction) = &self.direction else { return Ok(()) };
         require_finite(format!("direction of {what}"), direction, |i| format!("entry {i}"))?;
-        if norm(direction) == 0.0 {
+        if direction.iter().all(|entry| *entry == 0.0) {
             return Err(Error::out_of_range(format!("the length of direction of {what}"), "positive", 0.0));
         }
         Ok(())
@@ -72,13 +72,12 @@ impl StraightLine {
     /// The displacement of the tip (m), seen from the base; `along_z` is the default direction.
     pub(crate) fn displacement(&self, tip: &Frame, along_z: f64) -> [f64; 3] {
         let of_tip = |v: [f64; 3]| std::array::from_fn(|k| (0..3).map(|axis| tip.axes[axis][k] * v[axis]).sum());
-        let direction: [f64; 3] = match (self.direction, self.frame) {
+        let along: [f64; 3] = match (self.direction, self.frame) {
             (None, _) => of_tip([0.0, 0.0, along_z]),
             (Some(direction), LineFrame::Tip) => of_tip(direction),
             (Some(direction), LineFrame::Base) => direction,
         };
-        let size = norm(&direction);
-        direction.map(|entry| entry * self.distance / size)
+        scaled(&direction(&along), self.distance)
     }
 
     /// The obstacles with the contacts that are allowed on the line.

@@ -32,6 +32,13 @@ pub fn plan_along_path(
     if options.objective == Cost::TipTravel {
         return Err(Error::unknown_option("objective along a path", "tip_travel", &["time", "joint_travel"]));
     }
+    if let Some(first) = options.task.and_then(|task| task.first) {
+        let problem = message![
+            Setting::First(first.name()),
+            " has no effect along a path, to all of which the tip keeps: give the other part a tolerance, or leave it free"
+        ];
+        return Err(Error::Contradiction { problem });
+    }
     let mut tip_path = options
         .task
         .map_or(Ok(Cow::Borrowed(tip_path)), |task| tip_path.for_task(&task, options.accuracy).map(Cow::Owned))?;
@@ -61,9 +68,7 @@ pub fn plan_along_path(
         },
         _ => planned?,
     };
-    if plan.note_kept(keeps.robot, keeps.keeps)?.is_some() && plan.status == Status::Solved {
-        plan.status = Status::Stalled;
-    }
+    plan.note_kept(keeps.robot, keeps.keeps)?;
     plan.name_peak(&limits);
     Ok(plan)
 }

@@ -8,7 +8,7 @@ use crate::message::{Message, Setting, message};
 use crate::obstacle::ClearSpace;
 use crate::plan::{Cost, EndName, Endpoint, Plan, PointToPointMethod, PointToPointOptions, motion_space};
 use crate::robot::Robot;
-use crate::solver::{Monitor, Status, Stopwatch};
+use crate::solver::{Monitor, Stopwatch};
 use crate::task::Task;
 use crate::timing::ConstantLimits;
 use crate::{free_path, tpbso};
@@ -33,9 +33,7 @@ pub fn plan_point_to_point(
     let space = motion_space(&options.surroundings, robot)?;
     let admitted = AdmittedEnds::read(robot, start, ends, options)?;
     let mut plan = plan_admitted(robot, &admitted, space.as_ref(), options, monitor)?;
-    if plan.note_kept(robot, &options.keeps)?.is_some() && plan.status == Status::Solved {
-        plan.status = Status::Stalled;
-    }
+    plan.note_kept(robot, &options.keeps)?;
     admitted.note(robot, ends, &mut plan);
     Ok(plan)
 }

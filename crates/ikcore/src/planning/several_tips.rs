@@ -106,7 +106,8 @@ impl<'a> EndSearch<'a> {
             return Ok(vec![first.q.to_vec()]);
         }
         let tips = &of_one_level(tips);
-        let all = AllOptions { each: self.options_of(tips), limit: Some(TRIED), ..AllOptions::default() };
+        let each = SolveOptions { whole_only: true, ..self.options_of(tips) };
+        let all = AllOptions { each, limit: Some(TRIED), ..AllOptions::default() };
         let targets: Vec<Target> = targets.iter().chain(self.also_kept(tips).map(Keep::target)).copied().collect();
         let others = solve_all_tips(self.robot, &targets, &all, monitor)?;
         self.evaluations += others.evaluations;

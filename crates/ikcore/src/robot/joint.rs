@@ -69,6 +69,16 @@ pub(crate) fn limit_rounding(lower: f64, upper: f64) -> f64 {
     (ROUNDING_OF_RANGE * range).max(LEAST_ROUNDING)
 }
 
+/// Play of joints that turn: 5 degrees, the calibration of a hobby servo (rad).
+const TURNING_PLAY: f64 = 5.0 * std::f64::consts::PI / 180.0;
+/// Play of joints that slide (m).
+const SLIDING_PLAY: f64 = 5e-3;
+
+/// Distance beyond a limit (rad, m) up to which a reading of a joint of this kind is taken as it is.
+pub(crate) fn play(kind: Option<JointKind>) -> f64 {
+    if kind.is_none_or(JointKind::turns) { TURNING_PLAY } else { SLIDING_PLAY }
+}
+
 /// Excess over a limit (rad, m) above which errors no longer suggest clipping.
 const NEAR: [f64; 2] = [50.0 * std::f64::consts::PI / 180.0, 0.05];
 

@@ -64,7 +64,7 @@ pub use builder::ChainBuilder;
 pub(crate) use description::require_supported;
 pub use description::{Drive, Element};
 pub use joint::{Joint, JointKind};
-pub(crate) use joint::{limit_rounding, outside_limits, position_unit, way_inside};
+pub(crate) use joint::{limit_rounding, outside_limits, play, position_unit, way_inside};
 pub use link_capsule::{LinkCapsule, LinkMesh, MeshFit};
 pub use masses::LinkInertia;
 pub(crate) use masses::{InertiaFault, Masses};

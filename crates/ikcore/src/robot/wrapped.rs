@@ -1,6 +1,6 @@
 //! Whole turns of joints: the same posture inside the limits, or near another one.
 
-use super::joint::{limit_rounding, outside_limits, position_unit, way_inside};
+use super::joint::{limit_rounding, outside_limits, play, position_unit, way_inside};
 use super::model::Robot;
 use crate::error::{Error, Result};
 use crate::math::sampling_range;
@@ -9,10 +9,11 @@ use crate::wording::number;
 
 impl Robot {
     /// The posture `q` (n,) at whole turns of its joints that are inside the limits, and nearest to `near` (n,). Without one, a joint
-    /// inside its limits keeps its turn, and a joint without limits comes to (-pi, pi]. Joints that slide stay where they are.
+    /// inside its limits keeps its turn, and a joint without limits comes to (-pi, pi]. A joint that no turn brings inside may be outside
+    /// by 5 degrees, as a start may. Joints that slide stay where they are, outside by 5 mm at most.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`]; [`Error::OutsideLimits`] names a joint that no whole turn brings inside.
+    /// [`Error::WrongLength`], [`Error::NotFinite`]; [`Error::OutsideLimits`] names a joint that is farther out at every turn.
     pub fn wrap(&self, q: &[f64], near: Option<&[f64]>) -> Result<Vec<f64>> {
         self.check("q", q)?;
         near.map_or(Ok(()), |near| self.check("near", near))?;
@@ -20,7 +21,7 @@ impl Robot {
             let joint = &self.joints()[j];
             let limits = sampling_range::opened(joint.lower, joint.upper).into();
             let near = near.map(|near| near[j]);
-            self.turned_inside(j, *value, near, limits).ok_or_else(|| self.no_turn(j, *value, limits))
+            self.turned_near(j, *value, near, limits).ok_or_else(|| self.no_turn(j, *value, limits))
         };
         q.iter().enumerate().map(turned).collect()
     }
@@ -35,6 +36,13 @@ impl Robot {
             wrapped.extend(self.wrap(q, near)?);
         }
         Ok(wrapped)
+    }
+
+    /// As [`turned_inside`](Self::turned_inside); where no turn is inside, at one that is outside by the play of a start.
+    pub(crate) fn turned_near(&self, j: usize, value: f64, near: Option<f64>, limits: [f64; 2]) -> Option<f64> {
+        let play = play(Some(self.joints()[j].kind));
+        let widened = [limits[0] - play, limits[1] + play];
+        self.turned_inside(j, value, near, limits).or_else(|| self.turned_inside(j, value, near, widened))
     }
 
     /// Value of joint `j` at the whole turn inside `limits` (rad, m) nearest to `near`; `None` where there is none. Rounding beyond a

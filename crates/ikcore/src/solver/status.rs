@@ -18,6 +18,11 @@ macro_rules! statuses {
         }
 
         impl Status {
+    /// Whether what comes first is met, and another part of the pose, or another level of tips, was given up for it.
+    pub(crate) fn is_given_up(self) -> bool {
+        matches!(self, Self::RotationGivenUp | Self::PositionGivenUp | Self::LevelGivenUp)
+    }
+
             /// All statuses in the order of their numbers.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 

@@ -13,7 +13,7 @@ use super::tip_error::Tolerance;
 use crate::error::{Error, Result, require_finite};
 use crate::math::Pose;
 use crate::math::box_step::ROWS;
-use crate::math::so3::norm;
+use crate::math::vector3::direction;
 use crate::robot::Robot;
 
 /// Part of a pose to reach.
@@ -81,8 +81,7 @@ impl TaskKind {
             (Self::Position, Target::Position(_)) | (Self::Pose, Target::Pose(_)) => Ok(*wanted),
             (Self::Orientation, Target::Pose(frame)) => Ok(Target::Orientation(*frame)),
             (Self::Pointing { axis }, Target::Pose(frame)) => {
-                let length = norm(axis);
-                Ok(Target::Pointing { frame: *frame, axis: axis.map(|entry| entry / length) })
+                Ok(Target::Pointing { frame: *frame, axis: direction(axis) })
             }
             _ => Err(Error::WrongTarget { task: self.name().into() }),
         }
@@ -188,7 +187,7 @@ impl Task {
     pub fn validate(&self) -> Result<()> {
         if let TaskKind::Pointing { axis } = &self.kind {
             require_finite("axis", axis, |i| format!("entry {i}"))?;
-            if norm(axis) == 0.0 {
+            if axis.iter().all(|entry| *entry == 0.0) {
                 return Err(Error::out_of_range("the length of axis", "positive", 0.0));
             }
         }

@@ -187,7 +187,7 @@ impl ConstantLimits {
     /// Returns `robot` with these position limits.
     ///
     /// # Errors
-    /// None in practice: the limits were checked.
+    /// [`Error::InvalidRobot`](crate::Error::InvalidRobot) where a joint that leads others by a polynomial has no limits.
     pub(crate) fn applied_to(&self, robot: &Robot) -> Result<Robot> {
         robot.with_limits(|j, joint| (joint.lower, joint.upper) = (self.lower[j], self.upper[j]))
     }

@@ -9,6 +9,10 @@ use crate::math::polynomial::{derivative, roots};
 /// Number of coefficients of a cubic.
 pub(super) const POWERS: usize = 4;
 
+/// Distance below which two waypoints count as one, and a line between two blends as none, relative to the extent of the
+/// waypoints: the time for it would be lost to rounding.
+pub(super) const NEGLIGIBLE_LENGTH: f64 = 1e-12;
+
 /// Largest difference of a derivative on both sides of a break before it counts as a jump (relative to its size there).
 const JUMP_TOLERANCE: f64 = 1e-9;
 

@@ -1,12 +1,8 @@
 //! Straight lines in joint space, and paths along them with corners rounded by parabolas.
 
-use super::joint_path::{JointPath, waypoint_rows};
+use super::joint_path::{JointPath, NEGLIGIBLE_LENGTH, waypoint_rows};
 use crate::error::{Error, Result};
 use crate::math::vector::{distance, squared_distance};
-
-/// Distance below which two waypoints count as one, and a line between two blends as none, relative to the extent of the
-/// waypoints: the time for it would be lost to rounding.
-const NEGLIGIBLE_LENGTH: f64 = 1e-12;
 
 /// Points (n each) joined by straight lines in joint space; consecutive points differ.
 #[derive(Debug, Clone, PartialEq)]

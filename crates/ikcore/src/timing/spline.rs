@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::str::FromStr;
 
-use super::joint_path::{JointPath, POWERS, waypoint_rows};
+use super::joint_path::{JointPath, NEGLIGIBLE_LENGTH, POWERS, waypoint_rows};
 use crate::error::{Error, Result, require_finite};
 use crate::interrupt::checkpoint;
 use crate::math::cubic_spline::{CubicSpline, SplineEnds};
+use crate::math::vector::largest_difference;
 
 impl FromStr for SplineEnds {
     type Err = Error;
@@ -23,7 +24,8 @@ impl FromStr for SplineEnds {
 
 impl JointPath {
     /// The cubic spline of `joints` (names) through `waypoints` (rad or m, one row of all joints per point) at the path
-    /// parameters `knots`. `None` means uniform in \[0, 1\]. Equal consecutive rows are one row: a rest has no length.
+    /// parameters `knots`. `None` means uniform in \[0, 1\]. Consecutive rows that are equal, to 1e-12 of the path's extent, are one row: a
+    /// rest has no length.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NotFinite`], [`Error::InvalidPath`] where all waypoints are the same,
@@ -62,10 +64,18 @@ impl JointPath {
     }
 }
 
-/// Indices of the rows that differ from the one before them, and of the first.
+/// Indices of the rows that differ, by more than rounding, from the row kept before them, and of the first.
 fn rows_that_differ(waypoints: &[f64], n: usize) -> Vec<usize> {
     let row = |i: usize| &waypoints[i * n..(i + 1) * n];
-    (0..waypoints.len() / n).filter(|&i| i == 0 || row(i) != row(i - 1)).collect()
+    let rows = waypoints.len() / n;
+    let extent = (1..rows).map(|i| largest_difference(row(i), row(0))).fold(0.0, f64::max);
+    let mut kept = vec![0];
+    for i in 1..rows {
+        if largest_difference(row(i), row(kept[kept.len() - 1])) > NEGLIGIBLE_LENGTH * extent {
+            kept.push(i);
+        }
+    }
+    kept
 }
 
 /// The kept rows, without a copy if these are all.

@@ -1,7 +1,7 @@
 //! The fastest motion that may leave its path by a tolerance.
 //!
 //! Smooth paths in tubes of the tolerance, and of narrower ones, compete with the path itself. All tolerances share the
-//! widths of these tubes, so that a wider one never takes longer.
+//! widths of these tubes, so that a wider one takes no longer, but for what a timing misses of its optimum.
 
 use super::constant_limits::ConstantLimits;
 use super::joint_path::JointPath;

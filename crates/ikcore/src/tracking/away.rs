@@ -19,6 +19,8 @@ pub struct Away {
 pub enum Way {
     /// No configuration on the target is known.
     Unknown,
+    /// One is known, but the arm is near enough to its target to keep its own.
+    Spared,
     /// One is known, but recovery is switched off.
     Declined,
     /// One is known, but the straight way of the joints to it is not clear or would part tips that are held.
@@ -45,6 +47,11 @@ impl Away {
                 )
                 .into()
             }
+            Way::Spared => format!(
+                "{holds}another configuration reaches the target, but for less than 1 mm or mrad the arm keeps its own: plan a \
+                 motion to the other one, or widen the tolerance"
+            )
+            .into(),
             Way::Declined => message![
                 holds,
                 "the target is in reach: ",

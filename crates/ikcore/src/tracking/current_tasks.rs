@@ -38,13 +38,12 @@ impl CurrentTasks {
         self.tasks.first().and_then(|task| task.criterion.region.as_ref())
     }
 
-    /// Reduces validated `targets` to the parts that their tasks use. Returns whether the tasks of several tips, `asked`, have
-    /// changed.
+    /// Reduces validated `targets` to the parts that their tasks use. Returns the tasks of several tips, `asked`, if they differ from
+    /// the current ones, to [replace](Self::replace) them.
     ///
     /// # Errors
-    /// Errors of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region; the tasks are then as
-    /// before.
-    pub fn read(&mut self, robot: &Robot, asked: &[NamedTask], targets: &mut [Target]) -> Result<bool> {
+    /// Errors of [`checked_tasks`] and [`reduce`], and [`Error::Contradiction`] for a task with a region.
+    pub fn read(&self, robot: &Robot, asked: &[NamedTask], targets: &mut [Target]) -> Result<Option<Vec<CheckedTask>>> {
         targets.iter().try_for_each(Target::validate)?;
         if asked.is_empty() && !targets.is_empty() {
             robot.require_one_tip("a plain target")?;
@@ -54,12 +53,15 @@ impl CurrentTasks {
             return Err(Error::Contradiction { problem: problem.into() });
         }
         if asked == self.asked && !targets.is_empty() {
-            return reduce(robot, &self.tasks, targets).map(|()| false);
+            return reduce(robot, &self.tasks, targets).map(|()| None);
         }
         let tasks = checked(robot, asked)?;
-        reduce(robot, &tasks, targets)?;
-        (self.asked, self.tasks) = (asked.to_vec(), tasks);
-        Ok(true)
+        reduce(robot, &tasks, targets).map(|()| Some(tasks))
+    }
+
+    /// Replaces the current tasks by `tasks`, the checked form of `asked`.
+    pub fn replace(&mut self, asked: Vec<NamedTask>, tasks: Vec<CheckedTask>) {
+        (self.asked, self.tasks) = (asked, tasks);
     }
 }
 

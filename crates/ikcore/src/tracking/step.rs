@@ -18,7 +18,8 @@ pub struct Step {
     /// holds the arm back, [`Status::HeldByConstraint`] if a constraint does, [`Status::HeldByTorque`] if a torque
     /// limit does or is exceeded by what the arm carries, [`Status::LevelGivenUp`] if the lowest level of
     /// several targets is met, not all, [`Status::RotationGivenUp`] or [`Status::PositionGivenUp`] if only the part of the pose that comes first
-    /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`].
+    /// is met, [`Status::Improved`] if the arm moves and is nearer than before, else [`Status::Capped`]. An arm that meets its last target
+    /// is [`Status::Capped`] in a tick that ignored another one, for its stamp, which it does not meet.
     pub status: Status,
     /// Errors at the accepted configuration.
     pub error: TipError,

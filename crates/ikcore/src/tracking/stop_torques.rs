@@ -333,7 +333,8 @@ impl StopTorques {
         let each = self.torques.limits().iter().enumerate();
         let beyond = each.map(|(joint, limit)| (joint, self.torque(node, joint), *limit));
         let (joint, torque, limit) = beyond
-            .filter(|(_, torque, limit)| torque.abs() > part * limit)
+            // NaN, the sum of infinite torques, is beyond any limit.
+            .filter(|(_, torque, limit)| !(torque.abs() <= part * limit))
             .max_by(|one, other| (one.1.abs() / one.2).total_cmp(&(other.1.abs() / other.2)))?;
         let is_at_rest = node.rates.iter().all(|rate| *rate == 0.0);
         Some(Overload { tick, joint, torque, limit, is_at_rest, easing: 0.0 })

@@ -2,9 +2,11 @@
 
 use smallvec::smallvec;
 
+use super::idle::Idle;
 use super::repeated_targets::RepeatedTargets;
 use super::target_filter::{RunningFilter, TargetFilter};
 use crate::error::{Error, Result, require_finite, require_positive};
+use crate::message::{Setting, message};
 use crate::task::{NamedTask, Target, TargetRow, TargetSegment, Twist};
 
 /// Longest extrapolation of a target (s), however old it is.
@@ -23,6 +25,29 @@ pub struct Arrival {
     pub stamp: Option<f64>,
 }
 
+impl Arrival {
+    /// Checks velocity and stamp of targets that arrive in a tick that ends at `time` (s).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
+    pub(super) fn check(&self, time: f64) -> Result<()> {
+        if let Some(velocity) = &self.velocity {
+            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
+        }
+        let Some(stamp) = self.stamp else { return Ok(()) };
+        require_finite("stamp", &[stamp], |_| "value".into())?;
+        if stamp > time * (1.0 + f64::EPSILON) {
+            let expected = message![
+                format!("at most {time}, the end of the tick (s) on the clock of the tracker ("),
+                Setting::Clock,
+                " advances by dt in each step; leave stamp out, or give the time of measurement on this clock)",
+            ];
+            return Err(Error::out_of_range("stamp", expected, stamp));
+        }
+        Ok(())
+    }
+}
+
 impl From<Target> for Arrival {
     fn from(target: Target) -> Self {
         Self { targets: smallvec![target], ..Self::default() }
@@ -36,6 +61,24 @@ impl FromIterator<(NamedTask, Target)> for Arrival {
     }
 }
 
+/// Targets that are ignored, as they are older than the last ones.
+#[derive(Debug)]
+pub(super) struct IgnoredTargets {
+    pub targets: TargetRow,
+    /// Why, for the message of the step.
+    pub reason: Idle,
+}
+
+/// Outcome of the arrivals of a tick.
+#[derive(Debug)]
+pub(super) enum Taken {
+    /// No targets, or the last ones again.
+    Nothing,
+    /// New targets, of this age (s).
+    New(f64),
+    Ignored(IgnoredTargets),
+}
+
 /// Targets of a session: one, or those of several tips, which arrive together.
 #[derive(Debug)]
 pub(super) struct TargetStream {
@@ -46,6 +89,8 @@ pub(super) struct TargetStream {
     /// Detector of repetitions, for rules that extrapolate.
     repeated: Option<RepeatedTargets>,
     last: Option<Arrival>,
+    /// The last targets before filtering.
+    received: TargetRow,
     /// Targets at the end of the previous tick, and their velocity.
     before: Option<(TargetRow, Option<[f64; 3]>)>,
     /// Whether they had moved in that tick.
@@ -70,6 +115,7 @@ impl TargetStream {
             timeout,
             repeated,
             last: None,
+            received: TargetRow::new(),
             before: None,
             moved_before: false,
             measured,
@@ -116,33 +162,27 @@ impl TargetStream {
         self.keep_as_before();
     }
 
-    /// Takes the targets that arrived in the tick that ends at `time` (s). Returns their age then (s); `None` without targets,
-    /// and for targets that are older than the last ones or repeat them.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`] for a velocity or stamp that is not finite, [`Error::OutOfRange`] for a stamp after `time`.
-    pub fn take(&mut self, mut arrival: Option<Arrival>, time: f64) -> Result<Option<f64>> {
-        let Some(Arrival { targets, velocity, stamp, .. }) = &mut arrival else { return Ok(None) };
+    /// Takes the [checked](Arrival::check) targets that arrived in the tick that ends at `time` (s).
+    pub fn take(&mut self, mut arrival: Option<Arrival>, time: f64) -> Taken {
+        let Some(Arrival { targets, stamp, .. }) = arrival.as_mut() else { return Taken::Nothing };
         let stamp = *stamp;
-        if let Some(velocity) = velocity {
-            require_finite("velocity of the target", velocity, |i| format!("coordinate {}", ["x", "y", "z"][i]))?;
-        }
         let measured = stamp.unwrap_or(time);
-        require_finite("stamp", &[measured], |_| "value".into())?;
-        if measured > time * (1.0 + f64::EPSILON) {
-            let expected = format!("at most {time}, the end of the tick (s)");
-            return Err(Error::out_of_range("stamp", &expected, measured));
-        }
         self.arrived = time;
         // Targets of an interrupted tick are replaced by the next ones.
         if measured < self.measured || stamp.is_some() && measured == self.measured {
-            return Ok(None);
+            let repeats = measured == self.measured && self.received == *targets;
+            if repeats {
+                return Taken::Nothing;
+            }
+            let reason = Idle::Outdated { stamp: measured, last: self.measured };
+            return Taken::Ignored(IgnoredTargets { targets: std::mem::take(targets), reason });
         }
         if stamp.is_none() && self.repeated.as_mut().is_some_and(|repeated| repeated.is_repetition(targets, time)) {
-            return Ok(None);
+            return Taken::Nothing;
         }
         let interval = measured - self.measured;
         self.measured = measured;
+        self.received.clone_from(targets);
         if let Some(filter) = self.filter.filter(|_| interval > 0.0) {
             self.filters.resize_with(targets.len(), || RunningFilter::new(filter));
             for (target, filter) in targets.iter_mut().zip(&mut self.filters) {
@@ -150,7 +190,7 @@ impl TargetStream {
             }
         }
         self.last = arrival;
-        Ok(Some((time - measured).clamp(0.0, LONGEST_AGE)))
+        Taken::New((time - measured).clamp(0.0, LONGEST_AGE))
     }
 
     /// The timeout (s), if no target has arrived for longer at `time` (s).

@@ -1,7 +1,8 @@
 //! `plan_moves`.
 
 use ikcore::obstacle::Surroundings;
-use ikcore::planning::{self, Move, MoveKind, MovesOptions};
+use ikcore::planning::{self, JointGoal, Move, MoveKind, MovesOptions};
+use ikcore::robot::Robot;
 use ikcore::units::{self, UnitDoubt};
 use pyo3::prelude::*;
 
@@ -91,6 +92,7 @@ pub fn plan_moves(
     let arm = robot.get().core.clone();
     let moves = read_moves(moves)?;
     doubt(moves.iter().enumerate().filter_map(doubted_speed))?;
+    doubt(moves.iter().enumerate().filter_map(|(index, each)| doubted_place(&arm, index, each)))?;
     let start = joint_vector(&arm, "start_q", start_q)?;
     let (in_force, resolved) = limits_of_call(py, limits, robot.get(), &Sampling::once())?;
     let given = GivenObstacles::read_for(py, robot.get(), obstacles)?;
@@ -107,6 +109,16 @@ pub fn plan_moves(
     let plan = watched(py, progress, |watcher| planning::plan_moves(&arm, &moves, &start, &options, watcher))?;
     python_calls::log(py, "plan_moves", &said(&plan.message()))?;
     PyPlan::new(plan, robot, in_force, given.tuple)
+}
+
+/// Doubts the position that a move leads a tip to.
+fn doubted_place(robot: &Robot, index: usize, each: &Move) -> Option<UnitDoubt> {
+    let tip = each.tip.as_deref().map_or(Some(0), |name| robot.tip_number(name).ok())?;
+    let pose = match &each.kind {
+        MoveKind::Line { pose, .. } | MoveKind::Arc { pose, .. } | MoveKind::Joints(JointGoal::Pose(pose)) => pose,
+        MoveKind::Joints(JointGoal::Configuration(_)) | MoveKind::Wait(_) => return None,
+    };
+    units::of_position(robot, &format!("move {index}"), &[tip], &pose.translation.vector.into())
 }
 
 /// Doubts the speed of a move.

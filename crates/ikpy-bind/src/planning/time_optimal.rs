@@ -39,7 +39,7 @@ const METHOD: &str = "time_optimal";
 ///     joint_names: n names; None: "q1", "q2" and so on.
 ///     tolerance: a number or (n,): the motion may leave the path by this much in each joint (rad, m), at the same path
 ///         parameter, and then takes the smooth path in this tube on which it is fastest: noise of a recording inside it
-///         is smoothed. A wider tolerance never takes longer. None or 0: exactly on the path.
+///         is smoothed. A wider tolerance hardly ever takes longer. None or 0: exactly on the path.
 ///     robot: the robot whose joints these are: fields that `limits` leaves out are then its own, and `tip_speed`, `tip_acceleration` and
 ///         `tip_turn_speed` of `limits` are kept for its tips, and `torque` for its joints. None: no robot, and no limits of tips or torques.
 ///

@@ -33,14 +33,15 @@ impl PyRobot {
     ///
     /// Controllers that report angles from 0 to 360 degrees, or count turns, become usable this way. A joint inside its limits
     /// stays where it is, one outside takes the fewest turns, and a joint without limits comes to (-pi, pi]; with `near`, each
-    /// takes the turn nearest to it. Rounding beyond a limit is taken off. Joints that slide stay as they are.
+    /// takes the turn nearest to it. Rounding beyond a limit is taken off. A joint that no turn brings inside may be outside by
+    /// 5 degrees, as the start of a motion may. Joints that slide stay as they are, outside by 5 mm at most.
     ///
     /// Args:
     ///     q: joint positions (n,) or (m, n) (rad, m).
     ///     near: configuration (n,) to which the result is as near as possible; None: see above.
     ///
     /// Raises:
-    ///     LimitError: no whole turn brings a joint inside its limits, or a joint that slides is outside (an
+    ///     LimitError: a joint is farther outside its limits at every whole turn, or a joint that slides is (an
     ///         `InvalidInputError`).
     ///
     /// For example:

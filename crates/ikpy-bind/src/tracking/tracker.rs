@@ -196,8 +196,8 @@ impl PyTracker {
     ///         None: from the difference to the previous target.
     ///     stamp: time at which the target was measured, on the tracker's own clock, `time` (s); None: the end of the
     ///         tick. The model-based rule follows the motion of the targets up to now, over 0.25 s at most, under
-    ///         acceleration or jerk limits; without these a stamp is refused. A target older than the last one is
-    ///         ignored.
+    ///         acceleration or jerk limits; without these a stamp is refused. A target whose stamp is not after the last
+    ///         one is ignored; the message says so, and the step is solved only if the arm meets this target as well.
     #[pyo3(signature = (target, *, velocity=None, stamp=None))]
     fn step(
         &self,

@@ -93,7 +93,7 @@ pub fn calls() -> Vec<Row> {
         "ControlSession::command" Contradiction: answered().command(&TipPose::from(&Pose::identity())), "target: expected a position (3,), as before, got a pose (4, 4)";
         "ControlSession::observe" Contradiction: posed().observe(&[0.0; 3].into()), "position: expected a pose (4, 4), like the target, got a position (3,)";
         "Session::step" WrongTarget: turning().step(&Target::Position([1.0, 0.0, 0.0]), &mut Unattended), "task Orientation needs a target pose (4, 4), got a position (3,)";
-        "Session::advance" OutOfRange: eased_session().advance(Some(stamped(1.0)), &mut Unattended), "stamp must be at most 0.1, the end of the tick (s), got 1";
+        "Session::advance" OutOfRange: eased_session().advance(Some(stamped(1.0)), &mut Unattended), "stamp must be at most 0.1, the end of the tick (s) on the clock of the tracker (its time advances by dt in each step; leave stamp out, or give the time of measurement on this clock), got 1";
         "Session::advance" Contradiction: session().advance(Some(stamped(0.0)), &mut Unattended), "a stamp is used by the library's own rule under acceleration or jerk limits; give such limits, or leave stamp out";
         "plan_batch" Unreachable: plan_batch(&two(), &[PlanProblem { ends: vec![far()], ..problem(&[0.0; 2]) }], Some(1), &mut Unattended).unwrap().remove(0), "end cannot be reached: the nearest configuration found stays 7.000 m away";
         "solve_tips" Contradiction: twice(), "tip 'left_tool' has two targets";

@@ -93,7 +93,7 @@ pub fn robots_and_shapes() -> Vec<Row> {
         "ChainBuilder::build" NotFinite: adrift(), "fixed transform must be finite, but entry (0, 3) is NaN";
         "Robot::wrap" WrongLength: panda.wrap(&[0.0], None), "q of robot 'panda': expected 7 joints, got 1";
         "Robot::wrap" NotFinite: panda.wrap(&[NAN; 7], None), "q must be finite, but joint 'panda_joint1' is NaN";
-        "Robot::wrap" OutsideLimits: panda.wrap(&[0.0; 7], None), "q: joint 'panda_joint4' at 0 is outside its limits [-3.0718, -0.0698] by 0.06980 rad: no whole turn brings it inside, the nearest is 0.06980 rad beyond; moving it to the limit changes the pose";
+        "Robot::wrap" OutsideLimits: panda.wrap(&[0.1; 7], None), "q: joint 'panda_joint4' at 0.1 is outside its limits [-3.0718, -0.0698] by 0.1698 rad: no whole turn brings it inside, the nearest is 0.1698 rad beyond; moving it to the limit changes the pose";
         "Robot::wrap_all" WrongLength: panda.wrap_all(&[0.0; 8], None), "joint angles of robot 'panda': expected rows of 7 joints, got 8";
         "Robot::order_of" UnknownJoint: panda.order_of(&["panda_joint".to_owned()], false), "robot 'panda' has no joint 'panda_joint' in q (did you mean 'panda_joint7'?); its joints: panda_joint1, panda_joint2, panda_joint3, panda_joint4, panda_joint5, panda_joint6, panda_joint7; ignoring extra names leaves out values of other joints";
         "Robot::order_of" Contradiction: Robot::planar(&[1.0]).unwrap().order_of(&[], false), "names: joint 'joint_1' of robot 'planar1' missing; given: ";

@@ -79,5 +79,5 @@ fn walk_on(walk: &mut Walk<'_, '_>, limits: &WrappedLimits<'_>, members: &mut Ve
 }
 
 fn is_inside(bounds: &Bounds, q: &[f64]) -> bool {
-    bounds.ranges().zip(q).all(|((lower, upper), q)| lower <= *q && *q <= upper)
+    bounds.lower().iter().zip(bounds.upper()).zip(q).all(|((lower, upper), q)| lower <= q && q <= upper)
 }

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Document, UrdfKind};
-use super::mimic::{self, Coupling, Couplings, MimicDrive};
+use super::mimic::{self, Coupling, Couplings};
 use super::off_chain::{self, MimicFollower};
 use super::step;
 use super::tree::{Tree, TreeStep};
@@ -50,24 +50,33 @@ pub(super) fn build<'a>(document: &'a Document, tree: &Tree<'a>, base: &'a str, 
     with_masses(document, robot, &on_chain, &beside)
 }
 
-/// Adds masses, and the friction of mimic joints beside the chain; those on the chain have added theirs.
+/// The robot with the limits of its joints narrowed by their mimic joints beside the chain.
+fn narrowed_by(beside: &[MimicFollower], robot: Robot) -> Result<Robot> {
+    if beside.is_empty() {
+        return Ok(robot);
+    }
+    let mut problem = None;
+    let robot = robot.with_limits(|index, joint| {
+        for follower in beside.iter().filter(|follower| follower.master == index) {
+            if let Err(found) = mimic::narrow(joint, &follower.joint, follower.drive) {
+                problem.get_or_insert(found);
+            }
+        }
+    })?;
+    match problem {
+        None => Ok(robot),
+        Some(problem) => Err(Error::Urdf { line: None, problem: problem.into() }),
+    }
+}
+
+/// Adds masses. Mimic joints on the chain and beside it have added their friction.
 fn with_masses(
     document: &Document,
     robot: Robot,
     on_chain: &[MimicFollower],
     beside: &[MimicFollower],
 ) -> Result<Robot> {
-    let followers_of = |master: usize| beside.iter().filter(move |follower| follower.master == master);
-    let robot = match beside {
-        [] => robot,
-        _ => robot.with_limits(|index, joint| {
-            for follower in followers_of(index) {
-                if let MimicDrive::Linear(drive) = follower.drive {
-                    mimic::reflect(joint, &follower.joint, drive.scale);
-                }
-            }
-        })?,
-    };
+    let robot = narrowed_by(beside, robot)?;
     let links: HashSet<&str> = robot.all_link_names().collect();
     let inertias = document.inertias.iter().filter(|known| links.contains(known.link.as_str()));
     let mut faults = document.faults.clone();

@@ -215,7 +215,7 @@ fn narrow_by_polynomial(master: &mut Joint, follower: &Joint, polynomial: &[f64;
 }
 
 /// Adds friction and rotor of a mimic joint, as its master feels them. The torque limit stays that of the master's motor.
-pub(super) fn reflect(master: &mut Joint, follower: &Joint, scale: f64) {
+fn reflect(master: &mut Joint, follower: &Joint, scale: f64) {
     master.damping += scale * scale * follower.damping;
     master.armature += scale * scale * follower.armature;
     master.friction += scale.abs() * follower.friction;

@@ -88,12 +88,13 @@ impl Srdf {
     fn require_same_robot(&self, robot: &Robot) -> Result<()> {
         let known: HashSet<&str> = robot.all_link_names().collect();
         let both_known = |[one, other]: &[String; 2]| known.contains(one.as_str()) && known.contains(other.as_str());
-        let Some([first, _]) = self.disabled.first().filter(|_| !self.disabled.iter().any(both_known)) else {
+        let Some([first, second]) = self.disabled.first().filter(|_| !self.disabled.iter().any(both_known)) else {
             return Ok(());
         };
-        let (hint, links) = (suggestion(first, robot.all_link_names()), listed(robot.all_link_names()));
+        let unknown = if known.contains(first.as_str()) { second } else { first };
+        let (hint, links) = (suggestion(unknown, robot.all_link_names()), listed(robot.all_link_names()));
         let problem = format!(
-            "it is for another robot: '{}' has no two links that it disables, such as '{first}'{hint}; its links: {links}",
+            "it is for another robot: '{}' has no link '{unknown}'{hint} and none of the pairs that it disables; its links: {links}",
             robot.name()
         );
         Err(Error::Srdf { line: None, problem: problem.into() })

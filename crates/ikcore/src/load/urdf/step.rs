@@ -89,8 +89,8 @@ pub(super) fn kind(document: &Document, index: usize) -> Result<JointKind> {
             let (name, kind) = (&joint.name, format!("{:?}", joint.kind).to_lowercase());
             let problem = format!(
                 "joint '{name}' is {kind}, and a chain takes only revolute, continuous, prismatic, fixed and mimic \
-                 joints: take base and tip on one side of it, such as base '{}'",
-                joint.child
+                 joints: take base and tip on one side of it, a base from '{}' on or a tip up to '{}'",
+                joint.child, joint.parent
             );
             Err(document.error_at(index, problem))
         }

@@ -19,7 +19,7 @@ use super::rule::{RunningRule, TickResult, TickRule};
 use super::safety_filter::SafetyFilter;
 use super::settling::Settling;
 use super::step::Step;
-use super::target_stream::Arrival;
+use super::target_stream::{Arrival, IgnoredTargets, Taken};
 use super::tip_pace::TipPace;
 use super::torque_pace::{OtherLimits, TorquePace};
 use super::track_options::TrackOptions;
@@ -35,7 +35,7 @@ use crate::problem::Problem;
 use crate::rng::{self, LazyRng};
 use crate::robot::Robot;
 use crate::solver::{Monitor, Status};
-use crate::task::{Assessment, Goals, Target};
+use crate::task::{Assessment, CheckedTask, Goals, Target};
 
 /// Tracking session of one arm.
 #[derive(Debug)]
@@ -193,9 +193,16 @@ impl Session {
     /// [`Error::Contradiction`](crate::Error::Contradiction) for a stamp that the rule cannot use or for targets that contradict each
     /// other.
     pub fn advance(&mut self, mut arrival: Option<Arrival>, monitor: &mut dyn Monitor) -> Result<Step> {
-        arrival.as_mut().map_or(Ok(()), |arrival| self.read(arrival))?;
         let to = self.arm.next_time();
-        let sampled_ago = self.arm.targets.take(arrival, to)?.map(|ago| ago / self.arm.dt);
+        if let Some(arrival) = &mut arrival {
+            arrival.check(to)?;
+            self.read(arrival)?;
+        }
+        let (sampled_ago, ignored) = match self.arm.targets.take(arrival, to) {
+            Taken::Nothing => (None, None),
+            Taken::New(ago) => (Some(ago / self.arm.dt), None),
+            Taken::Ignored(ignored) => (None, Some(ignored)),
+        };
         self.update_stopping(sampled_ago.is_some(), to);
         let (within, can_stop) = (self.arm.narrow(), self.arm.narrow_to_stop());
         let settled = self.is_settled();
@@ -228,34 +235,48 @@ impl Session {
         } else {
             status
         };
+        let status = if self.misses(ignored.as_ref(), status, &found.q) { Status::Capped } else { status };
         let TickResult { position, evaluations, iterations, interrupted, .. } = found;
         let (error, inside_limits) = (found.assessment.error.into(), within && can_stop);
         let ceased = || (status != Status::Solved && self.running.has_outlived_targets()).then_some(Idle::Ceased);
-        let idle = self.idle().or_else(ceased);
+        let idle = ignored.map(|ignored| ignored.reason).or(self.idle()).or_else(ceased);
         Ok(Step { status, error, position, evaluations, iterations, inside_limits, away, idle, interrupted })
     }
 
-    /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule.
+    /// Whether a tick at `q` that meets the last targets misses those that it ignored.
+    fn misses(&self, ignored: Option<&IgnoredTargets>, status: Status, q: &[f64]) -> bool {
+        let TrackedArm { robot, tasks, .. } = &self.arm;
+        status == Status::Solved
+            && ignored.is_some_and(|ignored| !tasks.with(&ignored.targets).assess(robot, q).score.solved)
+    }
+
+    /// Checks an arrival, and reduces its targets to the parts that their tasks use. New tasks restart targets and rule; an arrival
+    /// that is refused changes nothing.
     fn read(&mut self, arrival: &mut Arrival) -> Result<()> {
         self.check_stamp(arrival.stamp)?;
         let asked = std::mem::take(&mut arrival.tips);
-        if self.arm.tasks.read(&self.arm.robot, &asked, &mut arrival.targets)? {
-            self.arm.targets.begin_anew();
-            self.follow_from_here();
-            self.arm.last_value = None;
-        }
+        let Some(tasks) = self.arm.tasks.read(&self.arm.robot, &asked, &mut arrival.targets)? else { return Ok(()) };
+        self.check_pairs(&tasks)?;
+        self.arm.tasks.replace(asked, tasks);
+        self.arm.targets.begin_anew();
+        self.follow_from_here();
+        self.arm.last_value = None;
+        Ok(())
+    }
+
+    /// Checks that all limits are kept while tips are held in the frames of others.
+    fn check_pairs(&self, tasks: &[CheckedTask]) -> Result<()> {
         let unkept = match (&self.pace, &self.torques) {
             (Some(_), _) => "limits of tips",
             (_, Some(_)) => "torque limits",
             _ => return Ok(()),
         };
-        if self.arm.tasks.with(&arrival.targets).has_pairs() {
-            let problem = format!(
-                "{unkept} are not kept while one tip is held in the frame of another: leave one of the two out"
-            );
-            return Err(Error::Contradiction { problem: problem.into() });
+        if !tasks.iter().any(|task| task.is_held) {
+            return Ok(());
         }
-        Ok(())
+        let problem =
+            format!("{unkept} are not kept while one tip is held in the frame of another: leave one of the two out");
+        Err(Error::Contradiction { problem: problem.into() })
     }
 
     /// Checks that the rule can use the stamp, if there is one.

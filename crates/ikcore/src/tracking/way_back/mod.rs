@@ -3,7 +3,8 @@
 //! A rule descends from where the arm is. At joint limits and in singular configurations the descent ends, though another
 //! configuration may meet the target. When the error has ceased to fall, a search looks for such configurations, some work a tick;
 //! the quickest to reach, along a straight line of the joints that is clear, becomes the goal of the arm. The rule of the joints
-//! takes it there inside all limits, and the safety filter goes on filtering each command.
+//! takes it there inside all limits, and the safety filter goes on filtering each command. An arm within a millimetre (milliradian) of its
+//! target is not moved for the rest, by whole turns perhaps: it only says what is known.
 //!
 //! ```text
 //! Following --error has ceased to fall--> Doubting --a descent ends too--> Looking --search ends--> Choosing --clear line--> Returning
@@ -23,7 +24,7 @@ mod search;
 mod tried;
 
 use goal_progress::GoalProgress;
-use rest_watch::RestWatch;
+use rest_watch::{NEAR, RestWatch};
 use search::{DESCENT, GoalSearch, Means, descended, movable};
 use tried::{Tried, is_still};
 
@@ -242,9 +243,14 @@ impl WayBack {
         if context.aims.is_empty() {
             return;
         }
+        // Near its target a moving arm gets there by itself, or lags.
+        if error <= NEAR && !is_resting(end) {
+            return;
+        }
         self.error_at_rest = error;
         if let Some(tried) = &mut self.tried
             && tried.holds(context.aims.targets, error)
+            && !(tried.spares() && error > NEAR)
         {
             self.away = tried.away;
             self.name_joints(&context);
@@ -352,6 +358,10 @@ impl WayBack {
         if !to.solved {
             // The targets have moved away since.
             self.follow();
+            return Next::Continue;
+        }
+        if self.error_at_rest <= NEAR {
+            self.stay(Way::Spared, end, false);
             return Next::Continue;
         }
         if !self.goes {

@@ -3,8 +3,8 @@
 //! Noise of a target changes the error from tick to tick. An error counts only if it is well above these changes, so that a
 //! noisy target that the arm meets on average does not look out of its reach.
 
-/// Error that counts as met, whatever the tolerance (m, rad).
-const MET: f64 = 1e-3;
+/// Error of an arm that is near its target (m, rad).
+pub(super) const NEAR: f64 = 1e-3;
 
 /// Time without progress after which the error has ceased to fall (s).
 const PATIENCE: f64 = 0.3;
@@ -43,12 +43,14 @@ impl RestWatch {
     /// Ends a tick of `dt` (s) with this error. Returns whether it has ceased to fall; the watch then begins anew.
     #[inline]
     pub fn has_ceased(&mut self, error: f64, dt: f64) -> bool {
-        if error <= MET {
+        if error <= 0.0 {
             self.began = None;
             return false;
         }
+        // Noise near the target says nothing about an arm that leaves it.
+        let crosses = (error <= NEAR) != (self.last <= NEAR);
         match self.began {
-            Some(began) if error > (1.0 - PROGRESS) * began => {}
+            Some(began) if error > (1.0 - PROGRESS) * began && !crosses => {}
             _ => {
                 self.begin(error);
                 return false;
@@ -83,6 +85,7 @@ mod tests {
     #[test]
     fn an_error_that_stays_or_creeps_has_ceased_to_fall() {
         assert!(ceases(std::iter::repeat(0.2)));
+        assert!(ceases(std::iter::repeat(1e-5)));
         assert!(ceases((0..).map(|tick| 0.2 * 0.999_f64.powi(tick))));
         assert!(ceases((0..).map(|tick| 0.2 + 1e-3 * f64::from(tick % 2))));
     }
@@ -91,7 +94,7 @@ mod tests {
     fn a_falling_error_and_noise_have_not() {
         assert!(!ceases((0..).map(|tick| 0.2 * 0.99_f64.powi(tick))));
         assert!(!ceases((0..).map(|tick| 0.005 + 0.004 * f64::from(tick % 2))));
-        assert!(!ceases(std::iter::repeat(5e-4)));
+        assert!(!ceases(std::iter::repeat(0.0)));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Outcome of a search, which need not be repeated.
 
 use crate::task::{Target, TargetRow};
-use crate::tracking::away::Away;
+use crate::tracking::away::{Away, Way};
 
 /// Waits before an arm tries again among other obstacles after it has failed to get to what was found. Obstacles that are replaced
 /// in every tick would otherwise send it to and fro.
@@ -28,6 +28,11 @@ impl Tried {
     pub fn new(targets: &[Target], error: f64, away: Option<Away>, failed: bool) -> Self {
         let waits = if failed { WAITS } else { 0 };
         Self { targets: TargetRow::from_slice(targets), error, away, failed, waits, replaced: false }
+    }
+
+    /// Whether the arm was near enough to its target to be spared the way.
+    pub fn spares(&self) -> bool {
+        self.away.is_some_and(|away| away.way == Way::Spared)
     }
 
     /// Records that obstacles were replaced.
