@@ -94,6 +94,9 @@ fn options_are_checked() {
     assert_eq!(error, Error::Contradiction { problem: said.into() });
     let error = with(CalibrationOptions { sigma: Some(vec![[0.0; 2]; 30]), ..CalibrationOptions::default() });
     assert_eq!(error.to_string(), "standard deviation of a measurement must be positive and finite, got 0");
+    let error = with(CalibrationOptions { sigma: Some(vec![[1e-300; 2]; 30]), ..CalibrationOptions::default() });
+    let said = "standard deviation of a measurement must be from 1e-100 to 1e100 (m, rad), got ";
+    assert!(error.to_string().starts_with(said), "{error}");
     let pairs = Measured::Pairs(vec![0.1; 15]);
     let options = CalibrationOptions { fit: vec![Part::Base], ..CalibrationOptions::default() };
     let error = calibrate(&arm(), &qs, &pairs, &options).unwrap_err().to_string();

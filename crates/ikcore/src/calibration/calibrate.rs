@@ -330,6 +330,9 @@ fn model_of(
     model
 }
 
+/// Standard deviations (m, rad) whose inverse squares are numbers.
+const SIGMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+
 /// Checks the noise that was given.
 fn check_sigma(measured: &Measured, sigma: Option<&[[f64; 2]]>) -> Result<()> {
     let Some(sigma) = sigma else { return Ok(()) };
@@ -337,8 +340,13 @@ fn check_sigma(measured: &Measured, sigma: Option<&[[f64; 2]]>) -> Result<()> {
         let expected = format!("{}, one for each measurement", measured.count());
         return Err(Error::WrongLength { what: "standard deviations".into(), expected, got: sigma.len() });
     }
-    let wrong = sigma.as_flattened().iter().find(|value| !(**value > 0.0 && value.is_finite()));
-    wrong.map_or(Ok(()), |value| {
-        Err(Error::out_of_range("standard deviation of a measurement", "positive and finite", *value))
+    let all = sigma.as_flattened().iter();
+    let what = "standard deviation of a measurement";
+    if let Some(value) = all.clone().find(|value| !(**value > 0.0 && value.is_finite())) {
+        return Err(Error::out_of_range(what, "positive and finite", *value));
+    }
+    all.clone().find(|value| !SIGMAS.contains(value)).map_or(Ok(()), |value| {
+        let expected = format!("from {:e} to {:e} (m, rad)", SIGMAS.start(), SIGMAS.end());
+        Err(Error::out_of_range(what, &expected, *value))
     })
 }
