@@ -1966,7 +1966,8 @@ def solve_all(
 
     Raises:
         InvalidInputError: wrong shape, NaN, a target that is not a rigid transform, or `turns` that make more than 10,000
-            configurations; tasks of several tips of different levels, which all solutions would meet.
+            configurations; tasks of several tips of different levels, or a task with `first`, which
+            all solutions would meet.
         LimitError: limits that contradict each other.
 
     For example:
